@@ -6,7 +6,9 @@
 pub mod app;
 pub mod bench;
 pub mod cli;
+pub mod export;
 
+pub use isolith_bricks as bricks;
 pub use isolith_document as document;
 #[cfg(feature = "window")]
 pub use isolith_editor as editor;

@@ -3,6 +3,7 @@
 //! covered without a line here, except for its surface in `surfaces`.
 
 mod blends;
+mod bricks;
 mod drawn;
 pub mod modifiers;
 mod operators;

@@ -9,7 +9,9 @@ use isolith::field::reference::accuracy::verdicts;
 use isolith::field::reference::image::render_reference;
 use isolith::geometry::Camera;
 use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
-use isolith::scene::{Instancer, Lattice, Material, MaterialVariation, Modifier, Node, NodeKind, Scene};
+use isolith::scene::{
+    DynamicKind, Instancer, Lattice, Material, MaterialVariation, Modifier, Node, NodeKind, Scene, Variation,
+};
 use isolith::wgsl::Options;
 
 use crate::copies::{limited, scene_of, varied};
@@ -70,6 +72,24 @@ fn pictures_of_copies_without_end_are_as_exact_as_promised() {
     });
     let faults: Vec<_> = scenes.flat_map(|scene| faults(&scene, &scene)).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Rays that skim over so many places of a list that no dispatch comes to an end.
+fn skimmed() -> BenchScene {
+    let lattice = Lattice::Polar { count: 6, rings: 250, radius: 1.0, spacing: 0.1 };
+    let variation = Variation { scale_min: [0.08; 3], scale_max: [0.2; 3], ..varied() };
+    let instancer = Instancer { lattice, variation, seed: 5, ..Instancer::default() };
+    let scene = scene_of(instancer, &[DynamicKind::FractionalBrownianMotion]);
+    let mut drawn = BenchScene::new("skimmed", &scene, None);
+    let eye = DVec3::new(-24.0, 0.5, 0.0);
+    drawn.camera = Camera::looking_at(eye, eye + DVec3::new(1.0, -0.01, 0.02), 0.12);
+    drawn
+}
+
+#[test]
+fn walks_through_long_lists_go_on_where_they_were_left() {
+    let scene = skimmed();
+    assert_eq!(faults(&scene, &scene), [""; 0]);
 }
 
 #[test]

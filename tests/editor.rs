@@ -3,7 +3,9 @@
 mod adding;
 mod attachments;
 mod choosing;
+mod doctor;
 mod fields;
+mod first_run;
 mod handles;
 mod instancers;
 mod jobs;
@@ -17,6 +19,7 @@ mod pawn;
 mod picture;
 mod popups;
 mod preferences;
+mod rendering;
 mod saving;
 mod timeline;
 mod transforms;
@@ -116,11 +119,7 @@ fn press(harness: &mut Harness<'_, Editor>, modifiers: Modifiers, key: Key) {
 
 /// Undoes every step and returns their number.
 fn undo_all(harness: &mut Harness<'_, Editor>) -> usize {
-    let mut steps = 0;
-    while harness.state_mut().document_mut().undo() {
-        steps += 1;
-    }
-    steps
+    std::iter::from_fn(|| harness.state_mut().document_mut().undo().then_some(())).count()
 }
 
 fn shape(harness: &Harness<'_, Editor>, id: NodeId) -> Shape {

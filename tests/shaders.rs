@@ -8,8 +8,8 @@ use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits, ShadowSettings};
 use isolith::scene::ShapeKind;
 use isolith::wgsl::{
-    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, assemble_with,
-    fits_templates,
+    Evaluator, FILES, OpSet, Options, SCENE_COPIES, ShapeSet, SkipMode, Structure, assemble, assemble_featured,
+    assemble_with, fits_templates,
 };
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -53,6 +53,10 @@ fn sources() -> Vec<(&'static str, String)> {
     let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
     let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS"]);
     let meshes = meshes.unwrap_or_else(|error| panic!("{error}"));
+    let among = [all[0].clone(), all[1].clone()].map(|evaluator| {
+        let text = assemble_with("shadow.wgsl", &evaluator, Options::default(), &["MESH_RAYS", SCENE_COPIES]);
+        ("shadow.wgsl", text.unwrap_or_else(|error| panic!("{error}")))
+    });
     let with_copies = Options { copies: true, ..Options::default() };
     let of_copies = ["copy/cone.wgsl", "trace.wgsl", "surface.wgsl"].into_iter().flat_map(|pass| {
         let text = |evaluator| assemble(pass, evaluator, with_copies).unwrap_or_else(|error| panic!("{error}"));
@@ -61,6 +65,7 @@ fn sources() -> Vec<(&'static str, String)> {
     let shown = assemble_featured("shade.wgsl", &["COPIES"]).unwrap_or_else(|error| panic!("{error}"));
     plain
         .chain(of_copies)
+        .chain(among)
         .chain([("shade.wgsl", shown), ("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)])
         .collect()
 }

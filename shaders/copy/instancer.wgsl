@@ -1,4 +1,6 @@
-// The instancer of the dispatch. Counterpart of `GpuInstancer` in `src/field/copies/gpu.rs`.
+// An instancer. Counterpart of `GpuInstancer` in `src/field/copies/gpu.rs`. Passes over one type at a
+// time bind the instancer of the dispatch as `instancer`. Those over the whole scene bind all of
+// them, and the assembler makes `instancers[instancer_at]` of that name.
 //
 // Cells are relative to the anchor, the cell nearest to the eye, and positions to its place: so they
 // are as exact far from the instancer's origin as near it.
@@ -46,7 +48,8 @@ struct Instancer {
     anchor: vec3i,
     mask_count: u32,
     spacing: vec3f,
-    padding_0: f32,
+    // Most that lengths of the world grow by in the instancer's space.
+    most_factor: f32,
     // Absolute place of the anchor.
     anchor_place: vec3f,
     stagger: f32,
@@ -76,7 +79,8 @@ struct Instancer {
     bounds_low: vec3f,
     first_row: u32,
     bounds_high: vec3f,
-    padding: u32,
+    // Visits that a cell counts as; only of queries.
+    cell_visits: u32,
     // How far the content of a copy may reach from its place along each axis.
     reach: vec3f,
     padding_1: u32,
@@ -88,13 +92,14 @@ struct Instancer {
     palette: array<vec4u, 16>,
     masks: array<CopyMask, 8>,
     dynamics: array<CopyDynamic, 8>,
+    // The components of the types, four per row; only of queries.
+    components: array<vec4u, 8>,
 }
 
-@group(1) @binding(5) var<uniform> instancer: Instancer;
-// Lists of places. Per instancer: a tree of boxes, two rows per node, lower and upper corner, with
-// the link and the axis as bits in w; then three rows per place: position with the
-// cosine of the slope of the ground, rotation, id.
-@group(1) @binding(6) var<storage, read> places: array<vec4f>;
+// Beside it `places`, the lists of places. Per instancer: a tree of boxes, two rows per node, lower
+// and upper corner, with the link and the axis as bits in w; then three rows per place: position
+// with the cosine of the slope of the ground, rotation, id.
+#include "generated/instancer.wgsl"
 
 // A number of the instancer that ends a loop or decides. lavapipe compiles a pipeline anew for each
 // value of such a uniform, and writes beyond its memory if there are several. It leaves those alone

@@ -9,9 +9,9 @@
 
 @group(2) @binding(9) var<storage, read_write> copied: array<vec4i>;
 
-// In the last word of where an unfinished march goes on: within this copy, or with this slab.
-const TRACE_IN_COPY: i32 = 1;
-const TRACE_IN_SLAB: i32 = 2;
+// In the last word of where an unfinished march goes on: within the copy of this cell. Else see
+// `copy_walk_go_on`.
+const TRACE_IN_COPY: i32 = 3;
 
 fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, depth: f32, exists: bool) -> Traced {
     let place = select(0u, copied_place(pixel), exists);
@@ -24,27 +24,26 @@ fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, 
     let direction = instancer_local_direction(view_direction(pixel));
     var walk = copy_walk_begin(origin, direction, start, select(-1.0, limit, runs), 0.0, dispatch.max_cells);
     if left_at.w != 0 {
-        copy_walk_skip(&walk, left_at.xyz);
+        let mode = select(left_at.w, WALK_AT_CELL, left_at.w == TRACE_IN_COPY);
+        copy_walk_go_on(&walk, vec4i(left_at.xyz, mode), limit);
     }
-    var seeks = left_at.w == TRACE_IN_COPY;
+    var is_first = left_at.w == TRACE_IN_COPY;
     var traced = Traced(NEVER, resume, true, 0u);
     var leaves_at = vec4i(0);
     var hit = vec3i(0);
     var visit: CopyVisit;
     while copy_walk_next(&walk, component.kind, min(limit, traced.t), &visit) {
-        // Copies before the one where the march was left have been seen.
-        if seeks && any(visit.copy.place != left_at.xyz) {
-            continue;
-        }
+        // The march was left within it.
+        let resumes = is_first && all(visit.copy.place == left_at.xyz);
+        is_first = false;
         let along = copy_local_direction(visit.copy, direction);
         let stretch = length(along);
         // Positions count from where the ray enters: so they are no larger than the copy.
         let local = copy_local_point(visit.copy, origin + direction * visit.entry) + component.eye;
         let ray = Ray(local, visit.entry * stretch, along / stretch);
         let interval = bounds_interval(component, ray, 0.0);
-        let entry = select(max(interval.x, ray.skipped), resume * stretch, seeks);
+        let entry = select(max(interval.x, ray.skipped), resume * stretch, resumes);
         let exit = min(interval.y, visit.exit * stretch);
-        seeks = false;
         let left = dispatch.max_steps - traced.evaluations;
         let meets = entry <= exit;
         let marched = march_along(component, ray, entry, exit, 0.0, select(0u, left, meets));
@@ -61,10 +60,10 @@ fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, 
             break;
         }
     }
-    if walk.exhausted || seeks {
+    if walk.exhausted {
         traced.ended = false;
         traced.resume = walk.entry;
-        leaves_at = vec4i(select(copy_walk_slab(&walk), left_at.xyz, seeks), TRACE_IN_SLAB);
+        leaves_at = copy_walk_left(&walk);
     }
     if traced.t < limit {
         copied[place] = vec4i(hit, i32(dispatch.component) + 1);

@@ -20,6 +20,8 @@ struct Copy {
 
 // Kind of a copy that does not exist.
 const COPY_ABSENT: u32 = 0xffffffffu;
+// Asks for copies of all kinds.
+const COPY_OF_ANY: u32 = 0xfffffffeu;
 // A copy whose scale is less than this along an axis is not there.
 const COPY_LEAST_SCALE: f32 = 1e-6;
 
@@ -124,8 +126,8 @@ fn copy_cell_place(relative: vec3i) -> vec3f {
     return place;
 }
 
-// The copy of a cell relative to the anchor, or at a place of the list, if it is of this type; else
-// one of kind COPY_ABSENT.
+// The copy of a cell relative to the anchor, or at the place `at.x` of the list, if it is of this
+// type; else one of kind COPY_ABSENT.
 fn copy_at(at: vec3i, kind: u32) -> Copy {
     var cell = at + instancer.anchor;
     var base = copy_cell_place(at);
@@ -141,10 +143,11 @@ fn copy_at(at: vec3i, kind: u32) -> Copy {
         turned = places[row + 1u];
         jitter = vec3f(0.0);
     }
-    if copy_kind(cell, base, up) != kind {
+    let own = copy_kind(cell, base, up);
+    if own == COPY_ABSENT || (own != kind && kind != COPY_OF_ANY) {
         return copy_none();
     }
-    return copy_placed(at, cell, kind, base, turned, jitter);
+    return copy_placed(at, cell, own, base, turned, jitter);
 }
 
 fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {

@@ -55,16 +55,10 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
     walk.cell = vec3i(1);
     walk.entry = near;
     // Between the bounds of all copies.
-    let wide = spread * far;
-    let low = (instancer.bounds_low - wide - origin) / direction;
-    let high = (instancer.bounds_high + wide - origin) / direction;
-    let is_flat = abs(direction) < vec3f(1e-12);
-    let outside = is_flat & ((origin < instancer.bounds_low - wide) | (origin > instancer.bounds_high + wide));
-    let first = select(min(low, high), vec3f(-1e30), is_flat);
-    let last = select(max(low, high), vec3f(1e30), is_flat);
-    walk.near = max(near, max(first.x, max(first.y, first.z)));
-    let end = min(far, min(last.x, min(last.y, last.z)));
-    if any(outside) || walk.near > end {
+    let interval = walk_interval(&walk, instancer.bounds_low, instancer.bounds_high, far);
+    walk.near = interval.x;
+    let end = interval.y;
+    if walk.near > end {
         return walk;
     }
     if instancer_count(instancer.tree_count, direction.x) > 0u {
@@ -82,17 +76,39 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
     return walk;
 }
 
-// Moves a walk that has begun on to the slab of a cell. A walk through a list stays at its beginning.
-fn copy_walk_skip(walk: ptr<function, CopyWalk>, cell: vec3i) {
-    let slab = cell[(*walk).axis];
+// What `copy_walk_go_on` is told in w: where a walk goes on.
+const WALK_AT_CELL: i32 = 1;
+const WALK_AT_SLAB: i32 = 2;
+
+// Moves a walk that has begun on to where another was left: to a cell, to the node of a list, or to
+// the slab of a cell.
+fn copy_walk_go_on(walk: ptr<function, CopyWalk>, at: vec4i, far: f32) {
+    if instancer_count(instancer.tree_count, (*walk).direction.x) > 0u {
+        if (*walk).open > 0u {
+            walk_go_on_list(walk, u32(at.y));
+        }
+        return;
+    }
+    let slab = at[(*walk).axis];
     (*walk).left = select((*walk).left - abs(slab - (*walk).slab), 0, (*walk).left <= 0);
     (*walk).slab = slab;
+    if at.w == WALK_AT_CELL && (*walk).left > 0 && !walk_next_slab(walk, far) {
+        (*walk).cell = at.xyz;
+    }
 }
 
-// The cell that `copy_walk_skip` needs for an exhausted walk to go on.
-fn copy_walk_slab(walk: ptr<function, CopyWalk>) -> vec3i {
+// Where a walk that is not over goes on.
+fn copy_walk_left(walk: ptr<function, CopyWalk>) -> vec4i {
+    if instancer_count(instancer.tree_count, (*walk).direction.x) > 0u {
+        return vec4i(0, i32(walk_stack[(*walk).open - 1u]), 0, WALK_AT_CELL);
+    }
     let is_between = any((*walk).cell > (*walk).high);
-    return select((*walk).low, vec3i((*walk).slab), is_between);
+    return select(vec4i((*walk).cell, WALK_AT_CELL), vec4i(vec3i((*walk).slab), WALK_AT_SLAB), is_between);
+}
+
+fn copy_walk_is_over(walk: ptr<function, CopyWalk>) -> bool {
+    let is_list = instancer_count(instancer.tree_count, (*walk).direction.x) > 0u;
+    return select((*walk).left <= 0 && any((*walk).cell > (*walk).high), (*walk).open == 0u, is_list);
 }
 
 // The next copy of this kind whose bounding sphere the cone meets before `far`; false if there is
@@ -100,7 +116,7 @@ fn copy_walk_slab(walk: ptr<function, CopyWalk>) -> vec3i {
 fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr<function, CopyVisit>) -> bool {
     let is_list = instancer_count(instancer.tree_count, (*walk).direction.x) > 0u;
     loop {
-        if select((*walk).left <= 0 && any((*walk).cell > (*walk).high), (*walk).open == 0u, is_list) {
+        if copy_walk_is_over(walk) {
             return false;
         }
         if (*walk).budget == 0u {
@@ -151,8 +167,8 @@ fn walk_next_slab(walk: ptr<function, CopyWalk>, far: f32) -> bool {
     return false;
 }
 
-// Moves on to the next cell of the slab; true if its reach meets the cone.
-fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
+// Looks at the next cell, and moves on.
+fn walk_pass_cell(walk: ptr<function, CopyWalk>) {
     let cell = (*walk).cell;
     let low = (*walk).low;
     let high = (*walk).high;
@@ -161,7 +177,14 @@ fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
     let wraps_y = wraps_x && cell.y >= high.y;
     let is_last = wraps_y && cell.z >= high.z;
     let next = vec3i(select(cell.x + 1, low.x, wraps_x), select(select(cell.y, cell.y + 1, wraps_x), low.y, wraps_y), select(cell.z, cell.z + 1, wraps_y));
+    (*walk).at = cell;
     (*walk).cell = select(next, high + 1, is_last);
+}
+
+// Moves on to the next cell of the slab; true if its reach meets the cone.
+fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
+    let cell = (*walk).cell;
+    walk_pass_cell(walk);
     let away = copy_cell_place(cell) - (*walk).origin;
     let direction = (*walk).direction;
     let nearest = dot(away, direction) / dot(direction, direction);
@@ -169,7 +192,6 @@ fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
     let most = length(instancer.reach);
     // Radius of the cone where the sphere of this radius ends at the latest.
     let wide = (*walk).spread * max(nearest + most * inverseSqrt(dot(direction, direction)), 0.0);
-    (*walk).at = cell;
     // Seen from above, the reach is less for what is tall.
     let level = direction.xz;
     let beside = abs(away.x * level.y - away.z * level.x);

@@ -26,43 +26,73 @@ struct CopyWalk {
     high: vec3i,
     // Open nodes of the tree of a list.
     open: u32,
-    // The cell or place to look at, see `copy_at`.
+    // The cell or place to look at, see `copy_at`. Of a place, the second is its node.
     at: vec3i,
 }
 
 const WALK_DEPTH: u32 = 32u;
 var<private> walk_stack: array<u32, WALK_DEPTH>;
 
-// Moves on to the next node of the tree; true if that is a leaf that the cone meets.
+// Where the cone enters and leaves a box: its bounds along each axis alone, so it may leave later.
+fn walk_interval(walk: ptr<function, CopyWalk>, low: vec3f, high: vec3f, far: f32) -> vec2f {
+    let origin = (*walk).origin;
+    let spread = vec3f((*walk).spread);
+    let is_backward = (*walk).direction < vec3f(0.0);
+    let ahead = select(low - origin, origin - high, is_backward);
+    let behind = select(high - origin, origin - low, is_backward);
+    let speed = abs((*walk).direction);
+    let entry = ahead / max(speed + spread, vec3f(1e-12));
+    // A cone that is wider than steep never leaves on this axis.
+    let leaves = (speed > spread) | (spread <= vec3f(0.0));
+    let exit = select(vec3f(1e30), behind / max(speed - spread, vec3f(1e-12)), leaves);
+    return vec2f(max((*walk).near, max(entry.x, max(entry.y, entry.z))), min(far, min(exit.x, min(exit.y, exit.z))));
+}
+
+// Moves on to the next node of the tree; true if that is a leaf that the cone meets. The place to
+// look at is then that of the leaf, with the number of the node as `at.y`.
 fn walk_step_list(walk: ptr<function, CopyWalk>, far: f32) -> bool {
     (*walk).open -= 1u;
     let index = walk_stack[(*walk).open];
     let row = instancer.first_row + 2u * index;
     let low = places[row];
     let high = places[row + 1u];
-    let direction = (*walk).direction;
-    let origin = (*walk).origin;
-    let wide = (*walk).spread * far;
-    let is_flat = abs(direction) < vec3f(1e-12);
-    let safe = select(direction, vec3f(1e-12), is_flat);
-    let a = (low.xyz - wide - origin) / safe;
-    let b = (high.xyz + wide - origin) / safe;
-    let first = min(a, b);
-    let last = max(a, b);
-    let entry = max((*walk).near, max(first.x, max(first.y, first.z)));
-    let exit = min(far, min(last.x, min(last.y, last.z)));
-    if entry > exit {
+    let interval = walk_interval(walk, low.xyz, high.xyz, far);
+    if interval.x > interval.y {
         return false;
     }
-    let link = bitcast<u32>(low.w);
-    let axis = bitcast<u32>(high.w);
+    return walk_open_list(walk, index, bitcast<u32>(low.w), bitcast<u32>(high.w));
+}
+
+// Opens the children of a node, the nearer one on top; true if it is a leaf.
+fn walk_open_list(walk: ptr<function, CopyWalk>, index: u32, link: u32, axis: u32) -> bool {
     if axis == 3u {
-        (*walk).at = vec3i(i32(link), 0, 0);
+        (*walk).at = vec3i(i32(link), i32(index), 0);
         return true;
     }
-    let is_backward = direction[axis] < 0.0;
+    let is_backward = (*walk).direction[axis] < 0.0;
     walk_stack[(*walk).open] = select(link, index + 1u, is_backward);
     walk_stack[(*walk).open + 1u] = select(index + 1u, link, is_backward);
     (*walk).open += 2u;
     return false;
+}
+
+// Opens what a walk has open that is about to look at a node.
+fn walk_go_on_list(walk: ptr<function, CopyWalk>, node: u32) {
+    var index = 0u;
+    (*walk).open = 0u;
+    while index < node && (*walk).open + 1u < WALK_DEPTH {
+        let row = instancer.first_row + 2u * index;
+        let link = bitcast<u32>(places[row].w);
+        let axis = min(bitcast<u32>(places[row + 1u].w), 2u);
+        let is_backward = (*walk).direction[axis] < 0.0;
+        // The left child follows its node, and all below it precede the right one.
+        let is_right = node >= link;
+        if is_right == is_backward {
+            walk_stack[(*walk).open] = select(link, index + 1u, is_backward);
+            (*walk).open += 1u;
+        }
+        index = select(index + 1u, link, is_right);
+    }
+    walk_stack[(*walk).open] = node;
+    (*walk).open += 1u;
 }

@@ -17,5 +17,7 @@ struct ShadowSettings {
     padding: f32,
 }
 
-// Words of the state of an unfinished pixel: of its shadows, and again of its occlusion.
-const SHADOW_STATE: u32 = 12u;
+// Words of the state of an unfinished pixel: of its shadows, and again of its occlusion. The last
+// ones, those for copies, exist only in scenes with instancers.
+const SHADOW_WORDS: u32 = 12u;
+const SHADOW_COPIES_WORDS: u32 = 5u;

@@ -14,7 +14,7 @@ struct SceneCone {
     // Of unit length.
     direction: vec3f,
     far: f32,
-    // Radius at distance 1, and the one by which the field is measured.
+    // Radius at distance 1, and the one by which the field is measured: the same but in copies.
     spread: f32,
     size: f32,
     // Least step, in meters and in radii.
@@ -54,7 +54,9 @@ const CONE_UNPROVEN: u32 = 8u;
 const CONE_ENDED: u32 = 16u;
 // The cone is a single ray.
 const CONE_RAY: u32 = 32u;
-const CONE_KEPT: u32 = 40u;
+// The component is an instancer, whose copies are marched one after the other.
+const CONE_COPIES: u32 = 64u;
+const CONE_KEPT: u32 = 104u;
 
 // See the CPU's constants of these names.
 const WIDE_SPREAD: f32 = 0.105;
@@ -138,11 +140,24 @@ fn cone_next(cone: SceneCone, march: ptr<function, ConeMarch>) {
         return;
     }
     march.visit = SceneVisit(interval.x, interval.y, hierarchy[found].link);
+#if SCENE_COPIES
+    if march.visit.component >= COPIES_LINK {
+        march.state = (march.state & CONE_KEPT) | CONE_COPIES;
+        return;
+    }
+#end
+    cone_enter(march);
+    if cone_passes_half_space(scene_components[march.visit.component], cone, march.visit.exit) {
+        march.state &= CONE_KEPT;
+    }
+}
+
+// Begins the march through what is to be visited.
+fn cone_enter(march: ptr<function, ConeMarch>) {
     march.t = march.visit.entry;
     march.last = vec2f(march.t, NEVER);
     march.ratio = NEVER;
-    let passes = cone_passes_half_space(scene_components[march.visit.component], cone, march.visit.exit);
-    march.state = (march.state & CONE_KEPT) | select(CONE_ACTIVE | CONE_LIT, 0u, passes);
+    march.state = (march.state & CONE_KEPT) | CONE_ACTIVE | CONE_LIT;
 }
 
 fn cone_plain_step(cone: SceneCone, t: f32, f: f32) -> f32 {
@@ -190,7 +205,7 @@ fn cone_leave(cone: SceneCone, march: ptr<function, ConeMarch>) {
     let is_lit = (march.state & CONE_LIT) != 0u;
     let is_dark = march.ratio <= -1.0;
     let share = select(cone_share(march.ratio), 1.0, is_lit);
-    let all = select(min(march.share, share), march.share * share, cone.spread < WIDE_SPREAD);
+    let all = select(min(march.share, share), march.share * share, cone.size < WIDE_SPREAD);
     march.share = select(all, 0.0, is_dark);
     let open = (march.state & CONE_KEPT) | select(CONE_UNPROVEN, 0u, is_lit);
     march.state = select(open, CONE_ENDED | (march.state & CONE_RAY), is_dark);

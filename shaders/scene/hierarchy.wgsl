@@ -9,7 +9,7 @@
 
 struct HierarchyNode {
     low: vec3f,
-    // Leaf: the component. Inner node: its right child; the left one follows it.
+    // Leaf: the component, or an instancer with COPIES_LINK. Inner node: its right child; the left one follows it.
     link: u32,
     high: vec3f,
     // Axis that separates its children, the left one lower; HIERARCHY_LEAF for a leaf.
@@ -26,6 +26,8 @@ struct SceneLimits {
 }
 
 const HIERARCHY_LEAF: u32 = 3u;
+// In the link of a leaf for all copies of an instancer. Only passes with SCENE_COPIES meet such leaves.
+const COPIES_LINK: u32 = 0x80000000u;
 const NO_COMPONENT: u32 = 0xffffffffu;
 // `MAX_HIERARCHY_DEPTH` on the CPU plus two.
 const HIERARCHY_STACK: u32 = 32u;

@@ -17,6 +17,7 @@ use thiserror::Error;
 use crate::document::recovery::Recovery;
 use crate::document::{Document, data_folder, state_folder};
 use crate::editor::{Editor, Example, Message};
+use crate::export::GpuStudio;
 use crate::gallery;
 use crate::jobs::Task;
 use crate::render::{AdapterChoice, Gpu};
@@ -51,10 +52,16 @@ const MAX_LOSSES: usize = 5;
 /// survives the loss of the graphics device: each new window rebuilds everything on the device from it. A panic keeps
 /// unsaved work and reports it through `tell`.
 pub fn run(document: Document, adapter: &AdapterChoice, tell: fn(&str)) -> Result<(), AppError> {
+    let is_new = document.path().is_none();
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
+    editor.set_studio(Arc::new(GpuStudio::new(adapter.clone())));
+    editor.set_templates(templates(), gallery::thumbnail);
     editor.set_recent(crate::document::RecentFiles::load());
     editor.set_preferences(crate::document::Preferences::load());
+    if is_new {
+        editor.welcome_at_start();
+    }
     match start_recovery() {
         Ok(recovery) => {
             recovery.rescuer().rescue_at_panics(tell);
@@ -123,6 +130,16 @@ fn options(adapter: &AdapterChoice) -> eframe::NativeOptions {
         run_and_return: true,
         ..Default::default()
     }
+}
+
+/// The scenes to start from, for the welcome.
+fn templates() -> Vec<Example> {
+    let template = |gallery::Template { name, scene, .. }| Example {
+        name: name.into(),
+        is_test: false,
+        open: Arc::new(move |_| Ok(Document::new(scene.clone()))),
+    };
+    gallery::templates().into_iter().map(template).collect()
 }
 
 /// The shipped scenes, for the File menu. A scene finds its meshes beside its own file. So a scene with meshes opens

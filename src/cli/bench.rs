@@ -7,13 +7,13 @@ use image::{ImageFormat, RgbImage};
 
 use super::adapters::AdapterArguments;
 use super::failure::Failure;
-use super::outputs::write_bytes;
 use super::progress::{Interrupts, Progress};
 use super::text::{complain, say};
 use crate::bench::{
     Baseline, Bench, BenchError, BenchRow, BenchScene, Metrics, ReferenceCache, cases, csv, first_of_each, growth,
     markdown, noise, stress_sheet, stress_table, time_against_error, worst_first,
 };
+use crate::export::outputs::write_bytes;
 use crate::gallery;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
@@ -244,12 +244,12 @@ fn create_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 fn write_text(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    write_bytes(&folder.join(name), text.as_bytes())
+    Ok(write_bytes(&folder.join(name), text.as_bytes())?)
 }
 
 fn write_picture(folder: &Path, name: &str, picture: &RgbImage) -> Result<(), Failure> {
     let path = folder.join(name);
     let mut bytes = Cursor::new(Vec::new());
     picture.write_to(&mut bytes, ImageFormat::Png).map_err(|error| not_written(&path, &error))?;
-    write_bytes(&path, bytes.get_ref())
+    Ok(write_bytes(&path, bytes.get_ref())?)
 }

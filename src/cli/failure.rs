@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::export::ExportError;
 use crate::field::FlattenError;
 use crate::field::reference::trace::TraceError;
 use crate::render::{GpuError, RenderError};
@@ -65,6 +66,14 @@ impl Failure {
         })
     }
 
+    /// The failure to make a picture of this scene.
+    pub fn of_export(error: ExportError, scene: &Path) -> Self {
+        match error {
+            ExportError::Limit(error) => Self::beyond_limit(scene, &error),
+            other => other.into(),
+        }
+    }
+
     /// The failure as one JSON object: `ok`, `file`, `node`, `field`, `reason`.
     pub fn to_json(&self, file: &Path) -> serde_json::Value {
         let (file, node, field, reason) = match self {
@@ -105,6 +114,18 @@ impl From<GpuError> for Failure {
             GpuError::NoAdapter | GpuError::NoDevice { .. } => Self::Graphics(error.to_string()),
             GpuError::NoSuchAdapter { .. } => Self::Usage(error.to_string()),
             GpuError::Lost(_) | GpuError::Refused(_) => Self::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Settings(reason) => Self::Usage(reason),
+            ExportError::Limit(error) => Self::Other(error.to_string()),
+            ExportError::Render(error) => error.into(),
+            ExportError::Write { path, reason } => Self::Write { path, reason },
+            ExportError::Canceled => Self::Canceled,
         }
     }
 }

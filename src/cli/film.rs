@@ -1,19 +1,12 @@
 //! Options of `isolith render` for the light of the picture: samples, background, exposure, view transform.
 
 use super::failure::Failure;
-use crate::field::standpoint::NARROW;
 use crate::field::{GBuffer, HitTarget};
-use crate::geometry::{Camera, Lens};
+use crate::geometry::Lens;
 use crate::render::Film;
 use crate::scene::limits::EXPOSURE;
 use crate::scene::{DisplaySettings, ParamField as _, ViewTransform};
-
-/// Default number of samples: straight edges err by 5 % of the contrast.
-const DEFAULT_SAMPLES: u32 = 16;
-/// Most pixels by which a lens may move the picture: f32 keeps its place to a thousandth of a pixel.
-const MOST_BLUR: f64 = 8_192.0;
-/// Most samples: the rounding of their sum in f32 stays far below a step of a byte.
-const MAX_SAMPLES: u32 = 4_096;
+use crate::session::{DEFAULT_SAMPLES, MAX_SAMPLES};
 
 /// These options.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -53,22 +46,6 @@ impl FilmArguments {
         }
         Ok(Film { samples, is_transparent: self.transparent, lens: Lens::default() })
     }
-}
-
-/// The film with the lens of the camera. Refuses a lens that blurs more than the picture can be moved exactly.
-pub fn with_lens(film: Film, lens: Lens, camera: &Camera, height: u32) -> Result<Film, Failure> {
-    let pixels = lens.greatest_offset(camera, height);
-    if film.samples == 1 {
-        return Ok(film);
-    }
-    if lens.is_open() && camera.footprint(height.into()) < NARROW {
-        return Err(Failure::Usage("the camera's aperture: pixels are too narrow for depth of field".into()));
-    }
-    if pixels > MOST_BLUR {
-        let reason = format!("it moves the picture by {pixels:.0} pixels, and the limit is {MOST_BLUR}");
-        return Err(Failure::Usage(format!("the camera's aperture: {reason}")));
-    }
-    Ok(Film { lens, ..film })
 }
 
 /// Leaves the background out of a picture of a single sample.

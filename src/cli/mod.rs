@@ -3,7 +3,6 @@
 //! | module | what it does |
 //! |---|---|
 //! | `render` | `isolith render`: a picture without a window |
-//! | `outputs` | buffers → files |
 //! | `bench` | `isolith bench`: run time against error |
 //! | `check` | `isolith check`: contents and faults of scenes |
 //! | `shader` | `isolith shader`: the assembled source of a pass |
@@ -12,8 +11,6 @@
 //! | `input` | scene files, standard input |
 //! | `text` | printing |
 //! | `film` | options for samples, exposure and view transform |
-//! | `exr_ids` | ids as OpenEXR channels |
-//! | `exr_light` | linear light as OpenEXR channels |
 //! | `log` | spans and events, enabled by `RUST_LOG` |
 //! | `runtime_folder` | the folder `XDG_RUNTIME_DIR` that drivers need |
 //! | `failure` | failures and their exit codes |
@@ -21,14 +18,10 @@
 mod adapters;
 mod bench;
 mod check;
-mod exr_ids;
-mod exr_light;
 mod failure;
 mod film;
-mod frames;
 mod input;
 mod log;
-mod outputs;
 mod progress;
 mod render;
 mod runtime_folder;

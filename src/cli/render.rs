@@ -1,35 +1,27 @@
 //! `isolith render`: a picture and further outputs, without a window.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
 use super::adapters::AdapterArguments;
 use super::failure::Failure;
-use super::film::{FilmArguments, clear_background, with_lens};
-use super::frames::{FrameRange, numbered, parse_fps};
+use super::film::{FilmArguments, clear_background};
 use super::input::{folder, is_standard, read_scene, shown};
-use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress, cancel_by_interrupts};
 use super::text::{complain, say};
+use crate::export::outputs::{self, Quantity};
+use crate::export::{Drawn, Still, StillPainter, StillSettings, Stills};
 use crate::field::debug_view::{DepthRange, ViewMode};
-use crate::field::mesh_rays::Meshes;
 use crate::field::reference::image::render_reference;
-use crate::field::{FlatScene, GBuffer, Shading, Warning};
-use crate::geometry::{Camera, Lens};
+use crate::field::{Shading, Warning};
 use crate::jobs::{JobEnd, Jobs, Task};
-use crate::render::driver::loop_iterations;
-use crate::render::{EvalStrategy, Film, Gpu, Renderer};
+use crate::render::{Film, StillWatch};
 use crate::scene::{ParamPath, Scene, Track};
-use crate::session::PreparedScene;
-
-/// Longest side of a picture, in pixels.
-const MAX_SIDE: u32 = 16_384;
-/// Maximum number of pixels in a picture; the processor keeps 44 bytes for each.
-const MAX_PIXELS: u64 = 1 << 27;
+use crate::session::{FrameRange, MAX_SIDE, check_size, ending, numbered, parse_fps};
 
 /// Arguments of `isolith render`.
 #[derive(Clone, Debug, clap::Args)]
@@ -56,6 +48,9 @@ pub struct RenderArguments {
     /// Camera of the scene by name, instead of its first one; a scene without cameras is seen whole
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
+    /// Write depth, normal, node id and base color (albedo) into the .exr of --output, too, as layers
+    #[arg(long, conflicts_with_all = ["reference", "view"])]
+    layers: bool,
     /// Also write the distance along the ray: .exr holds meters (background is infinite), .png a picture
     /// of them
     #[arg(long, value_name = "FILE", value_parser = output_path)]
@@ -103,6 +98,7 @@ impl RenderArguments {
             frames: None,
             fps: None,
             camera: None,
+            layers: false,
             depth: None,
             normal: None,
             node_id: None,
@@ -143,6 +139,9 @@ impl RenderArguments {
     /// The samples of the picture.
     fn film(&self) -> Result<Film, Failure> {
         let is_colored = self.view == ViewMode::Shaded;
+        if self.layers && !self.is_linear() {
+            return Err(Failure::Usage("--layers: only an .exr as --output has layers".into()));
+        }
         if !is_colored && self.is_linear() {
             return Err(Failure::Usage("--output: views other than shaded have no linear light for an .exr".into()));
         }
@@ -151,13 +150,13 @@ impl RenderArguments {
 
     /// Whether the picture is written as linear light.
     fn is_linear(&self) -> bool {
-        outputs::ending(&self.output) == "exr"
+        ending(&self.output) == "exr"
     }
 
     /// Every output with its quantity.
     fn outputs(&self) -> Vec<(Quantity, &Path)> {
         let all = [
-            (Quantity::Color, Some(&self.output)),
+            (if self.layers { Quantity::Layers } else { Quantity::Color }, Some(&self.output)),
             (Quantity::Depth, self.depth.as_ref()),
             (Quantity::Normal, self.normal.as_ref()),
             (Quantity::NodeId, self.node_id.as_ref()),
@@ -184,8 +183,9 @@ fn make(arguments: &RenderArguments) -> Result<(), Failure> {
     }
     let first = arguments.frames.map(|frames| frames.iter().next().unwrap_or(0));
     let paths = outputs_of(arguments, first)?;
-    let paths: Vec<_> = paths.iter().map(|(_, path)| path.as_path()).collect();
-    outputs::check_writable(&paths, &[&arguments.scene])?;
+    let paths: Vec<_> = paths.iter().map(|(_, path)| path.as_path()).filter(|path| !is_standard(path)).collect();
+    let inputs = [arguments.scene.as_path()];
+    outputs::check_writable(&paths, if is_standard(&arguments.scene) { &[] } else { &inputs })?;
     let film = arguments.film()?;
     let mut scene = read_scene(&arguments.scene)?;
     let display = scene.display;
@@ -196,16 +196,30 @@ fn make(arguments: &RenderArguments) -> Result<(), Failure> {
         scene.set_tracks([still]).map_err(|error| Failure::Other(error.to_string()))?;
     }
     let frames_per_second = arguments.fps.unwrap_or(scene.animation.timeline.frames_per_second);
-    let mut pictures = Pictures { arguments, scene, film, prepared: None, renderer: None, told: Vec::new() };
+    let settings = StillSettings {
+        size: arguments.size,
+        camera: arguments.camera.clone(),
+        view_mode: arguments.view,
+        shading: arguments.shading,
+        film,
+        is_linear: arguments.is_linear(),
+        has_layers: arguments.layers,
+    };
+    let stills = Stills::new(scene, folder(&arguments.scene), settings);
+    let mut pictures = Pictures { arguments, stills, painter: None, told: Vec::new() };
     let Some(frames) = arguments.frames else {
         let object = pictures.make(arguments.time, None, started)?;
         return if arguments.json { say(&object.to_string()) } else { Ok(()) };
     };
+    let time_of = |frame| {
+        let time = frames.time_of(frame, frames_per_second);
+        time.map_err(|reason| Failure::Usage(format!("--frames: {reason}")))
+    };
     for frame in frames.iter() {
-        frames.time_of(frame, frames_per_second)?;
+        time_of(frame)?;
     }
     for frame in frames.iter() {
-        let (time, started) = (frames.time_of(frame, frames_per_second)?, Instant::now());
+        let (time, started) = (time_of(frame)?, Instant::now());
         let mut object = pictures.make(time, Some(frame), started)?;
         (object["frame"], object["time"]) = (frame.into(), time.into());
         if arguments.json {
@@ -218,17 +232,21 @@ fn make(arguments: &RenderArguments) -> Result<(), Failure> {
 
 /// Every output with its quantity, in the file of this frame.
 fn outputs_of(arguments: &RenderArguments, frame: Option<i64>) -> Result<Vec<(Quantity, PathBuf)>, Failure> {
-    let path = |path: &Path| frame.map_or_else(|| Ok(path.to_path_buf()), |frame| numbered(path, frame));
+    let path = |path: &Path| match frame {
+        Some(_) if is_standard(path) => {
+            Err(Failure::Usage("standard output holds one picture, not one for each of --frames".into()))
+        }
+        Some(frame) => numbered(path, frame).map_err(Failure::Usage),
+        None => Ok(path.to_path_buf()),
+    };
     arguments.outputs().into_iter().map(|(quantity, pattern)| Ok((quantity, path(pattern)?))).collect()
 }
 
-/// Makes pictures of a scene, one after the other. What one has prepared and compiled serves the next.
+/// Makes pictures of a scene, one after the other.
 struct Pictures<'a> {
     arguments: &'a RenderArguments,
-    scene: Scene,
-    film: Film,
-    prepared: Option<PreparedScene>,
-    renderer: Option<Renderer>,
+    stills: Stills,
+    painter: Option<StillPainter>,
     /// Warnings that were printed.
     told: Vec<Warning>,
 }
@@ -238,41 +256,38 @@ impl Pictures<'_> {
     fn make(&mut self, time: f64, frame: Option<i64>, started: Instant) -> Result<Value, Failure> {
         let arguments = self.arguments;
         let cancel = cancel_by_interrupts();
-        let prepared = self.prepared_at(time, &Task::canceled_by("rendering", &cancel))?;
-        let (meshes, missing) = prepared.flat.load_meshes(&mut prepared.library);
-        let flat = Arc::clone(&prepared.flat);
-        let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
+        let still = self.stills.at(time, &Task::canceled_by("rendering", &cancel));
+        let still = still.map_err(|error| Failure::of_export(error, &shown(&arguments.scene)))?;
+        let mut warnings = still.warnings.clone();
         self.warn(&warnings)?;
         if cancel.is_canceled() {
             return Err(Failure::Canceled);
         }
-        let (camera, lens) = choose_camera(&flat, &meshes, arguments)?;
-        let film = with_lens(self.film, lens, &camera, arguments.size[1])?;
-        let flat = flat.shaded(arguments.shading);
-        let buffers = if arguments.reference {
-            reference_picture(arguments, film, self.scene.clone(), &flat, &meshes, &camera)?
+        let drawn = if arguments.reference {
+            reference_picture(arguments, self.stills.scene().clone(), &still)?
         } else {
-            let renderer = self.renderer.take();
-            let (renderer, buffers, unfinished) = gpu_picture(arguments, renderer, film, &flat, &meshes, &camera)?;
-            self.renderer = Some(renderer);
+            let painter = self.painter.take().unwrap_or_else(|| StillPainter::new(arguments.adapter.choice()));
+            let (painter, drawn, unfinished) = gpu_picture(arguments, painter, &still)?;
+            self.painter = Some(painter);
             self.warn(&unfinished)?;
             warnings.extend(unfinished);
-            buffers
+            drawn
         };
         let mut written = Vec::new();
         for (quantity, path) in outputs_of(arguments, frame)? {
-            let mut note = outputs::write(quantity, &path, &buffers, &flat, film.samples)?;
+            let mut note = write_output(quantity, &path, &drawn, &still)?;
             if quantity == Quantity::Color {
-                note += &arguments.view.note(&DepthRange::of(&flat.content(&meshes), camera.position));
+                let range = DepthRange::of(&still.flat.content(&still.meshes), still.camera.position);
+                note += &arguments.view.note(&range);
             }
             arguments.tell(&format!("wrote {}{note}", path.display()))?;
             let file = path.display().to_string();
             written.push(json!({ "quantity": quantity.name(), "file": file, "note": note.trim() }));
         }
-        let [width, height] = arguments.size;
-        let (components, seconds) = (flat.components.len(), started.elapsed().as_secs_f64());
-        let samples = if film.samples > 1 { format!("{} samples, ", film.samples) } else { String::new() };
-        arguments.tell(&format!("{width}x{height} pixels, {samples}{components} components, {seconds:.1} s"))?;
+        let ([width, height], samples) = (arguments.size, still.film.samples);
+        let (components, seconds) = (still.flat.components.len(), started.elapsed().as_secs_f64());
+        let said = if samples > 1 { format!("{samples} samples, ") } else { String::new() };
+        arguments.tell(&format!("{width}x{height} pixels, {said}{components} components, {seconds:.1} s"))?;
         let told = warnings.iter().map(|w| json!({ "node": format!("{} {}", w.name, w.node), "reason": w.reason }));
         Ok(json!({
             "ok": true,
@@ -280,21 +295,11 @@ impl Pictures<'_> {
             "outputs": written,
             "width": width,
             "height": height,
-            "samples": film.samples,
+            "samples": samples,
             "components": components,
             "seconds": seconds,
             "warnings": told.collect::<Vec<_>>(),
         }))
-    }
-
-    /// The scene prepared at this moment.
-    fn prepared_at(&mut self, time: f64, task: &Task) -> Result<&mut PreparedScene, Failure> {
-        let beyond = |error| Failure::beyond_limit(&shown(&self.arguments.scene), &error);
-        let prepared = match self.prepared.take() {
-            Some(mut prepared) => prepared.advance(&self.scene, time, task).map_err(beyond)?.then_some(prepared),
-            None => PreparedScene::of(&self.scene, time, folder(&self.arguments.scene), task).map_err(beyond)?,
-        };
-        Ok(self.prepared.insert(prepared.ok_or(Failure::Canceled)?))
     }
 
     /// Prints the warnings that are new.
@@ -304,21 +309,6 @@ impl Pictures<'_> {
         self.told.extend(new);
         result
     }
-}
-
-/// The camera chosen by name, or the default view of the scene.
-fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments) -> Result<(Camera, Lens), Failure> {
-    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let Some(name) = &arguments.camera else {
-        let lens = flat.cameras.first().map_or(Lens::default(), |first| first.lens);
-        return Ok((flat.default_camera(meshes, aspect), lens));
-    };
-    if let Some(found) = flat.cameras.iter().find(|camera| camera.name == *name) {
-        return Ok((found.camera, found.lens));
-    }
-    let names: Vec<_> = flat.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
-    let has = if names.is_empty() { "none".to_string() } else { names.join(", ") };
-    Err(Failure::Usage(format!("there is no camera \"{name}\"; the scene has {has}")))
 }
 
 /// Interval of progress updates.
@@ -347,78 +337,57 @@ fn by_job<T: Send + 'static>(
     }
 }
 
-/// The picture by a renderer, or by a new one. Returns the renderer for the next picture.
+/// The picture by the painter, which draws in a job and comes back for the next one.
 fn gpu_picture(
     arguments: &RenderArguments,
-    renderer: Option<Renderer>,
-    film: Film,
-    flat: &Arc<FlatScene>,
-    meshes: &Meshes,
-    camera: &Camera,
-) -> Result<(Renderer, GBuffer, Vec<Warning>), Failure> {
-    let (choice, view_mode, size) = (arguments.adapter.choice(), arguments.view, arguments.size);
-    let accumulates = film.samples > 1 || film.is_transparent || arguments.is_linear();
-    let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
-    by_job("rendering", arguments, Interrupts::StopTheTask, move |task| {
-        let mut renderer = match renderer {
-            Some(renderer) => renderer,
-            None => {
-                let gpu = Gpu::open(&choice)?;
-                loop_iterations(&gpu)?;
-                if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? }
-            }
-        };
-        if !view_mode.counts() {
-            // One picture is done before straight-line pipelines could be compiled: 4 s against 40 s at 577 nodes on
-            // lavapipe. Tapes take a fraction of a second to build, and draw a large blend up to a hundred times as
-            // fast.
-            renderer.set_strategy(EvalStrategy::Tape);
+    mut painter: StillPainter,
+    still: &Still,
+) -> Result<(StillPainter, Drawn, Vec<Warning>), Failure> {
+    /// Tells the task.
+    struct Watch<'a>(&'a Task);
+    impl StillWatch for Watch<'_> {
+        fn progress(&mut self, share: f32) -> bool {
+            self.0.set_progress(share);
+            !self.0.is_canceled()
         }
-        renderer.set_cancel(task.flag());
-        let mut update = |share| {
-            task.set_progress(share);
-            !task.is_canceled()
-        };
-        let (buffers, unfinished) = match accumulates {
-            true => renderer.render_samples(film, &flat, &meshes, &camera, size, &mut update)?,
-            false => renderer.render_as(view_mode, &flat, &meshes, &camera, size, &mut update)?,
-        };
-        Ok((renderer, buffers, unfinished))
+    }
+    let still = still.clone();
+    by_job("rendering", arguments, Interrupts::StopTheTask, move |task| {
+        let (drawn, unfinished) = painter.draw(&still, task, &mut Watch(task))?;
+        Ok((painter, drawn, unfinished))
     })
 }
 
-fn reference_picture(
-    arguments: &RenderArguments,
-    film: Film,
-    scene: Scene,
-    flat: &Arc<FlatScene>,
-    meshes: &Meshes,
-    camera: &Camera,
-) -> Result<GBuffer, Failure> {
-    let (path, size, is_transparent) = (arguments.scene.clone(), arguments.size, film.is_transparent);
-    let leave_out = move |mut buffers: GBuffer| {
-        if is_transparent {
+fn reference_picture(arguments: &RenderArguments, scene: Scene, still: &Still) -> Result<Drawn, Failure> {
+    let (path, size, still) = (arguments.scene.clone(), arguments.size, still.clone());
+    by_job("tracing", arguments, Interrupts::EndTheProgram, move |task| {
+        let Still { flat, meshes, camera, film, .. } = &still;
+        let reference = render_reference(flat, meshes, camera, size, &|share| task.set_progress(share as f32));
+        let mut buffers = reference.map_err(|error| Failure::given_up(&path, &scene, &error))?.buffers;
+        if film.is_transparent {
             clear_background(&mut buffers);
         }
-        buffers
-    };
-    let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
-    by_job("tracing", arguments, Interrupts::EndTheProgram, move |task| {
-        let reference = render_reference(&flat, &meshes, &camera, size, &|share| task.set_progress(share as f32));
-        reference
-            .map(|reference| leave_out(reference.buffers))
-            .map_err(|error| Failure::given_up(&path, &scene, &error))
+        Ok(Drawn { buffers, base_colors: Vec::new() })
     })
+}
+
+/// Writes one quantity: to standard output as PNG, or to a file.
+fn write_output(quantity: Quantity, path: &Path, drawn: &Drawn, still: &Still) -> Result<String, Failure> {
+    if !is_standard(path) {
+        return Ok(outputs::write(quantity, path, drawn, still)?);
+    }
+    let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
+    let (bytes, note) = outputs::encode(quantity, false, drawn, still).map_err(failed)?;
+    let mut out = std::io::stdout().lock();
+    out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| failed(error.to_string()))?;
+    Ok(note)
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let number = |part: &str| part.parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    let number = |part: &str| part.parse::<u32>().ok();
     let size = text.split_once('x').and_then(|(w, h)| Some([number(w)?, number(h)?]));
     let size = size.ok_or(format!("give width and height in pixels, 1 to {MAX_SIDE} each, like 1280x720"))?;
-    if u64::from(size[0]) * u64::from(size[1]) > MAX_PIXELS {
-        return Err(format!("{text} is more than {MAX_PIXELS} pixels"));
-    }
-    Ok(size)
+    check_size(size).map(|()| size)
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {
@@ -426,7 +395,7 @@ fn parse_time(text: &str) -> Result<f64, String> {
 }
 
 fn picture_path(text: &str) -> Result<PathBuf, String> {
-    match outputs::ending(Path::new(text)).as_str() {
+    match ending(Path::new(text)).as_str() {
         "png" | "exr" => Ok(text.into()),
         _ if is_standard(Path::new(text)) => Ok(text.into()),
         _ => Err("the picture's name must end in .png or .exr, or be - for standard output".into()),
@@ -434,7 +403,7 @@ fn picture_path(text: &str) -> Result<PathBuf, String> {
 }
 
 fn output_path(text: &str) -> Result<PathBuf, String> {
-    match outputs::ending(Path::new(text)).as_str() {
+    match ending(Path::new(text)).as_str() {
         "png" | "exr" => Ok(text.into()),
         _ => Err("the name must end in .exr or .png".into()),
     }

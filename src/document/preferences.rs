@@ -31,6 +31,8 @@ pub struct PreferenceValues {
     pub keymap: String,
     /// The keys that differ from it, by the name of the keymap.
     pub keys: BTreeMap<String, ChangedKeys>,
+    /// Whether the program starts without the welcome.
+    pub skips_welcome: bool,
     /// The names of what is offered first for adding; `None` for the program's own choice.
     pub favorites: Option<Vec<String>>,
     /// The places of the panels; `None` for the usual ones.
@@ -50,6 +52,7 @@ impl Default for PreferenceValues {
         Self {
             keymap: String::new(),
             keys: BTreeMap::new(),
+            skips_welcome: false,
             favorites: None,
             layout: None,
             theme: String::new(),

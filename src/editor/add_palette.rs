@@ -70,6 +70,7 @@ impl Category {
             AddShape(ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian | ShapeKind::Mandelbulb) => {
                 Self::Fractals
             }
+            AddShape(ShapeKind::MeshField) => Self::Meshes,
             AddShape(_) => Self::Basic,
             AddSun | AddPointLight | AddSpotLight | AddAreaLight => Self::Lights,
             AddCamera => Self::Cameras,

@@ -7,6 +7,7 @@ use isolith_field::model_pose;
 use isolith_geometry::Aabb;
 use isolith_mesh::MeshLibrary;
 use isolith_scene::{Node, NodeId, NodeKind, Scene};
+use isolith_session::pose_of;
 
 /// Half the size assumed for nodes without bounds: lights, cameras, endless planes.
 const TOKEN: f64 = 0.5;
@@ -79,7 +80,10 @@ pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
     match &node.kind {
         NodeKind::Group(_) => None,
         NodeKind::Instancer(instancer) => Some(extent(&instancer.lattice)).filter(|extent| !extent.is_empty()),
-        NodeKind::Object(object) => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
+        NodeKind::Object(object) => match object.shape.model_request() {
+            Some(request) => meshes.known(&pose_of(&request)).and_then(|mesh| Some(mesh.as_ref().ok()?.bounds)),
+            None => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
+        },
         NodeKind::Mesh(mesh) => {
             Some(meshes.nearest(&model_pose(mesh, 0.0)).and_then(|m| m.as_ref().ok()).map_or(token, |m| m.bounds))
         }

@@ -6,6 +6,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use super::messages::Message;
 use super::navigation::Navigation;
 use super::state::EditorState;
+use super::view_state::Through;
 use super::{selection, theme};
 use isolith_geometry::Camera;
 use isolith_scene::{NodeId, NodeKind};
@@ -18,20 +19,6 @@ const SHARE: f64 = 0.94;
 const SAFE: [f32; 2] = [0.93, 0.9];
 /// Farthest from the view that a camera is while one looks through it, in parts of its distance from the origin.
 const SAME: f64 = 1e-9;
-
-/// The number of bookmarks.
-pub const BOOKMARKS: usize = 4;
-
-/// A camera that one looks through.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Through {
-    /// The camera.
-    pub camera: NodeId,
-    /// The view that shows it.
-    view: Navigation,
-    /// Height of the frame as a share of the viewport's.
-    share: f64,
-}
 
 /// The camera that a node is, where it stands now.
 fn camera_of(state: &EditorState, id: NodeId) -> Option<Camera> {

@@ -20,11 +20,18 @@ impl Editor {
     /// question.
     pub fn intend(&mut self, intent: Intent, ctx: &Context) {
         self.state.session.finish();
+        // Whatever was chosen, also by a key: it is not in the way of what opens.
+        self.welcome.is_open = false;
         match intent {
             Intent::New => self.unless_lost(Next::New, ctx),
             Intent::Choose => self.perform(Next::Choose, ctx),
             Intent::Quit => self.unless_lost(Next::Quit, ctx),
             Intent::Open(path) => self.open_file(&path, false),
+            Intent::Template(index) => {
+                let Some((name, open)) = self.template(index) else { return };
+                let job = self.state.derived.open(&name, open);
+                self.opening = Some(Opening { job, name, path: None, is_agreed: false });
+            }
             Intent::Example(index) => {
                 let Some(example) = self.state.examples.get(index) else { return };
                 let job = self.state.derived.open(&example.name, example.open.clone());

@@ -13,6 +13,8 @@ pub enum Intent {
     Open(PathBuf),
     /// Open the example of this index.
     Example(usize),
+    /// Start with the template of this index.
+    Template(usize),
     /// Close the window.
     Quit,
 }

@@ -36,6 +36,10 @@
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
 //! | `documents`, `document_jobs`, `choosing` | opening, saving and quitting by jobs; paths of files |
 //! | `file_jobs` | files to store in nodes, and the list of recent files |
+//! | `rendering`, `render_view` | the render dialog: settings, and the job that renders into files |
+//! | `doctor`, `doctor_view` | the field doctor: jobs that examine and measure the scene, repairs, costs |
+//! | `first_run`, `welcome`, `tour` | what helps at the start |
+//! | `help`, `help_pages`, `changelog` | the help window: pages about panels, keys, what is new |
 //! | `input_order` | events in the order of their arrival, however slow the frames are |
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
@@ -45,6 +49,7 @@ mod appearance;
 mod below_list;
 mod bounds;
 mod camera_view;
+mod changelog;
 mod choice_walk;
 mod choosing;
 mod color_picker;
@@ -55,6 +60,8 @@ mod dialog_views;
 mod dialogs;
 mod dock;
 mod dock_tabs;
+mod doctor;
+mod doctor_view;
 mod document_jobs;
 mod documents;
 mod dope_sheet;
@@ -62,11 +69,14 @@ mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
+mod first_run;
 mod fly;
 mod framing;
 mod gizmo;
 mod grid_labels;
 mod handles;
+mod help;
+mod help_pages;
 mod icons;
 mod input_order;
 mod insertion;
@@ -94,6 +104,7 @@ mod log_panel;
 mod material_edits;
 mod material_library;
 mod materials;
+mod mesh_conversion;
 mod messages;
 mod multi_edit;
 mod navigation;
@@ -114,6 +125,8 @@ mod preset_picker;
 mod projection;
 mod recovery;
 mod relations;
+mod render_view;
+mod rendering;
 mod root;
 mod safekeeping;
 mod seeds;
@@ -131,6 +144,7 @@ mod thumbnails;
 mod time_scale;
 mod timeline;
 mod toolbar;
+mod tour;
 mod transforms;
 mod units;
 mod view_state;
@@ -138,6 +152,7 @@ mod viewport;
 mod viewport_click;
 mod viewport_drag;
 mod viewport_modal;
+mod welcome;
 mod widgets;
 
 pub use commands::command::Command;

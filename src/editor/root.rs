@@ -12,21 +12,26 @@ use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
 use super::dialogs::Dialogs;
+use super::doctor::Doctor;
 use super::document_jobs::{Opening, Saving};
+use super::help::Help;
 use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
 use super::preferences_window::PreferencesWindow;
+use super::rendering::Rendering;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
+use super::tour::Tour;
 use super::view_state::{Picture, ViewSettings};
+use super::welcome::Welcome;
 use super::{below_list, input_order, numbers, panels, theme, widgets};
 use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
 use isolith_mesh::MeshLibrary;
-use isolith_session::{Opened, folder_of};
+use isolith_session::{Opened, SharedStudio, folder_of};
 
 /// Maximum number of characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
@@ -52,6 +57,18 @@ pub struct Editor {
     /// Keeps unsaved work; `None` if recovery is off.
     pub(super) safekeeping: Option<Safekeeping>,
     pub(super) conflict: Conflict,
+    /// Rendering into files.
+    pub(super) rendering: Rendering,
+    /// The field doctor.
+    pub(super) doctor: Doctor,
+    /// The doctor shall look again once the arrays are ready.
+    pub(super) wants_scan: bool,
+    /// The window at the start, and what explains the program.
+    pub(super) welcome: Welcome,
+    pub(super) tour: Tour,
+    pub(super) help: Help,
+    /// The renderer for work beside the frames.
+    pub(super) studio: Option<SharedStudio>,
     /// The first view of a new document waits for its arrays and models.
     wants_view: bool,
     shown_title: String,
@@ -76,6 +93,13 @@ impl Editor {
             saving: None,
             safekeeping: None,
             conflict: Conflict::default(),
+            rendering: Rendering::default(),
+            doctor: Doctor::default(),
+            wants_scan: false,
+            welcome: Welcome::default(),
+            tour: Tour::default(),
+            help: Help::default(),
+            studio: None,
             wants_view: false,
             shown_title: String::new(),
             typing: false,
@@ -179,6 +203,9 @@ impl Editor {
         self.show_dialogs(ctx);
         self.show_conflict(ctx);
         self.show_recovery(ctx);
+        self.show_rendering(ctx);
+        self.show_doctor(ctx);
+        self.show_first_run(ctx);
         if let Some(command) = self.command_palette.show(&self.state, ctx) {
             self.run(command, ctx);
         }
@@ -268,6 +295,9 @@ impl Editor {
             || self.state.derived.is_preparing()
             || self.opening.is_some()
             || self.saving.is_some()
+            || self.is_rendering()
+            || self.doctor.is_busy()
+            || self.wants_scan
             || self.state.files.is_busy()
             || self.conflict.is_looking()
             || self.is_recovering()
@@ -307,6 +337,7 @@ impl Editor {
             || self.state.view.below.is_some()
             || self.conflict.is_open()
             || self.is_offering()
+            || self.welcome.is_open
     }
 
     /// Replaces the current document.
@@ -335,6 +366,7 @@ impl Editor {
         self.state.files.forget_attachments();
         self.state.materials.forget();
         self.forget_kept();
+        self.doctor.forget();
         self.shell.forget();
         self.wants_view = true;
     }

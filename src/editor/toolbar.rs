@@ -49,7 +49,9 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
     MenuBar::new().ui(ui, |ui| {
         ui.label(RichText::new("Isolith").strong().color(theme::ACCENT));
         ui.add_space(6.0);
-        for (name, menu) in [("File", Menu::File), ("Edit", Menu::Edit), ("Add", Menu::Add), ("View", Menu::View)] {
+        for (name, menu) in
+            [("File", Menu::File), ("Edit", Menu::Edit), ("Add", Menu::Add), ("View", Menu::View), ("Help", Menu::Help)]
+        {
             ui.menu_button(name, |ui| {
                 ui.set_min_width(230.0);
                 let room = widgets::room_below(ui);

@@ -2,7 +2,6 @@
 
 use egui::{Event, Pos2, Rect, TextureId, vec2};
 
-use super::camera_view::{BOOKMARKS, Through};
 use super::choice_walk::{BelowList, Walk};
 use super::navigation::Navigation;
 use super::transforms::kinds::{Orientation, Tool, TransformKind};
@@ -62,6 +61,20 @@ pub struct GridView {
     pub cell: f64,
     /// Whether it fades with distance.
     pub fades: bool,
+}
+
+/// The number of bookmarks.
+pub const BOOKMARKS: usize = 4;
+
+/// A camera that one looks through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Through {
+    /// The camera.
+    pub camera: NodeId,
+    /// The view that shows it.
+    pub view: Navigation,
+    /// Height of the frame as a share of the viewport's.
+    pub share: f64,
 }
 
 /// Samples per pixel of a new view.

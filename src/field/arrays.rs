@@ -7,6 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
 use super::copies::instancer::FlatInstancer;
+use super::flat_bricks::FlatBricks;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
@@ -377,6 +378,8 @@ pub struct FlatScene {
     pub material_ids: Vec<MaterialId>,
     /// Their textures.
     pub textures: FlatTextures,
+    /// The bricks of models.
+    pub bricks: FlatBricks,
     /// The components.
     pub components: Vec<Component>,
     /// Instancers whose types are among the components.

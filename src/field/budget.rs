@@ -10,6 +10,8 @@ use isolith_scene::{Node, NodeId};
 pub(super) const ENTRIES: &str = "the number of shapes and modifiers, copies included";
 /// See [`MAX_FLAT_ROWS`].
 pub(super) const ROWS: &str = "the number of rows of points, letters and images, copies included";
+/// See [`isolith_bricks::MAX_BRICK_TEXELS`].
+pub(super) const TEXELS: &str = "the number of texels of all models that are fields (a lower resolution takes fewer)";
 /// See [`MAX_FLAT_STEPS`].
 pub(super) const STEPS: &str = "the number of steps that flattening takes, copies included";
 /// See [`super::MAX_FLAT_LEVELS`].

@@ -7,9 +7,10 @@ use glam::{DAffine3, DVec3};
 
 use super::arrays::{MAX_STACK, Warning};
 use super::blends::has_own_radius;
-use super::budget::{Budget, Cancel, FlattenLimits, STACK};
+use super::budget::{Budget, Cancel, FlattenLimits, STACK, TEXELS};
 use super::composition::{apart, begin_with, group_of, polar_copies, size_of_fold, united};
 use super::cuts::{self, Cut};
+use super::flat_bricks::FlatBricks;
 use super::flat_texture::TexturedMaterials;
 use super::leaf::leaf;
 use super::lower_bound::{LowerBound, fold_bounds};
@@ -18,6 +19,7 @@ use super::modify::{MAX_NEIGHBORS, ModifierRefusal, Splines, modify};
 use super::operand::{Operand, Value};
 use super::prepare::PreparedShape;
 use super::survey::{Survey, active};
+use isolith_bricks::MAX_BRICK_TEXELS;
 use isolith_geometry::singular_values;
 use isolith_scene::{Modifier, Node, NodeId, NodeKind, Object, Operator, Scene};
 
@@ -128,6 +130,8 @@ pub(super) struct Collector<'a, 'b> {
     read_to: f64,
     /// Prepared shapes with a payload, by the node's index: copies share them, wherever they stand.
     drawn: HashMap<usize, Rc<PreparedShape>>,
+    /// The bricks of models so far, for their limit.
+    bricks: FlatBricks,
     splines: Splines,
     textured: TexturedMaterials<'a>,
     /// Modifiers that cannot act on their content, by the node's index and the number of modifiers before them.
@@ -151,6 +155,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             is_muted: false,
             read_to: 0.0,
             drawn: HashMap::new(),
+            bricks: FlatBricks::default(),
             splines: Splines::default(),
             textured: TexturedMaterials::new(scene.materials()),
             refused: HashSet::new(),
@@ -268,6 +273,12 @@ impl<'a, 'b> Collector<'a, 'b> {
         }
         if prepared.kind.has_data() {
             self.drawn.entry(index).or_insert_with(|| prepared.clone());
+        }
+        if let Some(bricks) = &prepared.bricks {
+            self.bricks.place(bricks);
+            if !self.budget.hold(node, TEXELS, self.bricks.texels(), MAX_BRICK_TEXELS) {
+                return None;
+            }
         }
         self.budget.take_rows(node, prepared.payload.len()).then_some(operand)
     }

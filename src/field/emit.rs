@@ -7,6 +7,7 @@ use super::flat_texture::RepeatedSpace;
 use super::lower_bound::{LowerBound, fold_bounds};
 use super::modifier_table::modifier_payload_row;
 use super::operand::{Operand, Value};
+use super::prepare::first_texels;
 use super::stack::shallow;
 use isolith_geometry::Aabb;
 use isolith_scene::{BlendKernel, MaterialId, ModifierKind, ShapeKind};
@@ -200,6 +201,13 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
             let [count, offset] = [data.len(), flat.params.len() - row].map(|v| v as f32);
             flat.params[row] = [count, offset, 0.0, 0.0];
             flat.params.extend(data.iter().map(|row| row.map(|v| v as f32)));
+            if let Value::Leaf { prepared, .. } = &operand.value
+                && let Some(bricks) = &prepared.bricks
+            {
+                // Exact: there are fewer texels than f32 can count.
+                let first = flat.bricks.place(bricks) as f32;
+                first_texels(bricks, |at| flat.params[row + offset as usize + at][3] += first);
+            }
         }
         if let Value::Fold(inner) | Value::Modified { content: inner, .. } = &operand.value {
             emit_data(flat, inner, entries);

@@ -22,6 +22,7 @@
 //! | `reference` | the reference renderer: whole pictures in f64, and the error of other pictures |
 //! | `hierarchy`, `scene_eval` | distances and rays to all components at once |
 //! | `pick` | which node a ray hits |
+//! | `doctor` | looks for nodes whose field breaks its promise, is slow, or does nothing |
 //! | `tape` | simplified tapes: the entries of a large component that matter in a cell |
 //! | `mixture` | materials of a pixel with their weights; counterpart of `shaders/common/mixture.wgsl` |
 //! | `meshes` | the loaded meshes of a scene |
@@ -67,9 +68,11 @@ pub mod copies;
 pub mod coverage;
 mod cuts;
 pub mod debug_view;
+pub mod doctor;
 mod emit;
 mod error;
 pub mod eval;
+mod flat_bricks;
 mod flat_material;
 mod flat_texture;
 mod flatten;
@@ -110,6 +113,7 @@ pub mod view;
 pub use arrays::*;
 pub use budget::{Cancel, Usage};
 pub use error::FlattenError;
+pub use flat_bricks::FlatBricks;
 pub use flat_material::FlatMaterial;
 pub use flat_texture::*;
 pub use flatten::{flatten, flatten_until, flatten_whole};

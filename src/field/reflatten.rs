@@ -200,7 +200,9 @@ impl Last {
         let flat = Arc::make_mut(&mut self.flat);
         // Lent for a moment: their values stand among the rows.
         let materials = std::mem::take(&mut flat.materials);
-        let mut scratch = FlatScene { materials, ..FlatScene::default() };
+        let bricks = std::mem::take(&mut flat.bricks);
+        let models = bricks.all().len();
+        let mut scratch = FlatScene { materials, bricks, ..FlatScene::default() };
         let mut known = true;
         let mut moved = Vec::new();
         let new = emit(&mut scratch, &operands, &mut |scratch, MaterialUse { id, object_from_world, repeated }| {
@@ -218,7 +220,9 @@ impl Last {
             found.unwrap_or(0) as u32
         });
         flat.materials = scratch.materials;
+        flat.bricks = scratch.bricks;
         if !known
+            || flat.bricks.all().len() != models
             || (new.count, new.param_rows, new.payload_rows, new.stack)
                 != (old.count, old.param_rows, old.payload_rows, old.stack)
         {

@@ -1,12 +1,15 @@
 //! Viewport shading: a flat scene under other lights, and in other materials. Geometry and ids stay as they are.
 
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec3;
 
 use super::arrays::FlatScene;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
-use isolith_scene::{DisplaySettings, Environment, Material};
+use super::light::environment_map::{EnvironmentMap, PlacedMap};
+use isolith_scene::{DisplaySettings, Environment, EnvironmentKind, Material, Shadowing};
 
 /// How a lit picture shows a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -78,6 +81,32 @@ impl FlatScene {
         Arc::new(shown)
     }
 
+    /// The scene in such light and matter that the light of each pixel is the base color of what is seen: diffuse
+    /// surfaces in white surroundings.
+    pub fn in_base_colors(&self) -> Arc<Self> {
+        let mut shown = Self::clone(self);
+        shown.lights.clear();
+        shown.environment =
+            Environment { background: EnvironmentKind::Color { color: [1.0; 3] }, shadowing: Shadowing::off() };
+        // Pictures share it: to compute one takes longer than a small picture.
+        static WHITE: OnceLock<Option<PlacedMap>> = OnceLock::new();
+        let white = WHITE.get_or_init(|| {
+            // Light from everywhere alike is the first harmonic alone; the sum over texels has it to three digits.
+            let mut white = PlacedMap::of(&shown.environment)?;
+            let mut harmonics = [DVec3::ZERO; 9];
+            harmonics[0] = DVec3::ONE;
+            white.map = Arc::new(EnvironmentMap { harmonics, ..EnvironmentMap::clone(&white.map) });
+            Some(white)
+        });
+        shown.environment_map = white.clone();
+        for material in &mut shown.materials {
+            let base_color = material.base_color;
+            *material =
+                FlatMaterial { base_color, phong_weight: 1.0, phong_specular: 0.0, emission: [0.0; 3], ..*material };
+        }
+        Arc::new(shown)
+    }
+
     /// Gives everything one material.
     fn wear(&mut self, material: FlatMaterial) {
         if self.materials.is_empty() && !self.meshes.is_empty() {
@@ -109,7 +138,6 @@ fn studio(shading: Shading) -> Environment {
 mod tests {
     use super::*;
     use crate::{flatten, gpu_lights};
-    use glam::DVec3;
     use isolith_geometry::Camera;
     use isolith_scene::{Light, MaterialId, Node, NodeKind, Object, Scene, ShapeKind};
 

@@ -119,9 +119,6 @@ fn add_types<'a>(
     if made.bounds().is_empty() {
         return Ok(());
     }
-    if flat.environment.shadowing.is_on() {
-        warn(flat, node, "casts no shadows: its copies only receive them");
-    }
     let (at, bounds) = (flat.instancers.len() as u32, made.world_bounds());
     flat.instancers.push(made);
     for (kind, (_, _, operands)) in types.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use super::arrays::*;
 use super::budget::Usage;
+use isolith_bricks::MAX_BRICK_TEXELS;
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
 
 impl FlatScene {
@@ -36,6 +37,7 @@ pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
         row("bytes", flat.bytes(), MAX_FLAT_BYTES, rows_node),
         row("materials, per object with textures", flat.materials.len(), MAX_PLACED_MATERIALS, None),
         row("bytes of images of textures", flat.textures.image_bytes(), MAX_TEXTURE_BYTES, None),
+        row("texels of bricks of models", flat.bricks.texels(), MAX_BRICK_TEXELS, None),
         row("steps", steps, MAX_FLAT_STEPS, largest_node),
     ]
 }

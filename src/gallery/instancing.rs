@@ -7,7 +7,7 @@ use super::scene_builder::{
 };
 use isolith_scene::{
     BlendKernel, CameraNode, Dynamic, DynamicKind, Instancer, Lattice, Mask, MaterialId, MaterialVariation, Modifier,
-    Node, NodeId, NodeKind, Operator, Scene, Shape, Snap, Variation,
+    Node, NodeId, NodeKind, Operator, Scene, Shadowing, Shape, Snap, Variation,
 };
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
@@ -21,6 +21,7 @@ fn instancer(name: &str, instancer: Instancer) -> Node {
 /// Cubes in rows, each row with another motion, seen from above; the first stands on the uniform grid.
 pub(super) fn dynamics() -> Scene {
     let mut builder = SceneBuilder::new([0.55, 0.62, 0.72], [0.75, 0.78, 0.82], [0.5, 0.52, 0.56]);
+    builder.shade(Shadowing::default());
     let ground = builder.matte("Ground", [0.16, 0.17, 0.2]);
     builder.add(None, object("Ground", cuboid(30.0, 0.2, 24.0, 0.0), ground).at(v(0.0, -0.1, 0.0)));
     let kinds: [Option<DynamicKind>; 12] = [
@@ -69,6 +70,8 @@ fn tint(hue: f64, primary: usize) -> f64 {
 /// Hills with trees and grass in the wind, both on the ground.
 pub(super) fn terrain() -> Scene {
     let mut builder = SceneBuilder::new([0.22, 0.42, 0.78], [0.72, 0.8, 0.88], [0.38, 0.44, 0.52]);
+    // Occlusion among the grass would take more than everything else.
+    builder.shade(Shadowing { occlusion: false, ..Shadowing::default() });
     let soil = builder.matte("Soil", [0.1, 0.13, 0.045]);
     let hills = Shape::Terrain {
         size: [120.0, 6.0, 120.0],
@@ -178,6 +181,7 @@ fn stones(builder: &mut SceneBuilder, hills: NodeId) {
 /// A sea that runs with time, and a herd of balloons that it carries.
 pub(super) fn ocean() -> Scene {
     let mut builder = SceneBuilder::new([0.16, 0.36, 0.72], [0.75, 0.83, 0.9], [0.4, 0.46, 0.54]);
+    builder.shade(Shadowing::default());
     let water = builder.water("Water", [0.01, 0.085, 0.12]);
     let sea = Shape::Ocean {
         size: [160.0, 2.0, 160.0],
@@ -222,6 +226,7 @@ pub(super) fn ocean() -> Scene {
 /// A city without end.
 pub(super) fn city() -> Scene {
     let mut builder = SceneBuilder::new([0.3, 0.45, 0.7], [0.82, 0.78, 0.72], [0.4, 0.42, 0.46]);
+    builder.shade(Shadowing { occlusion_radius: 3.0, ..Shadowing::default() });
     let asphalt = builder.matte("Asphalt", [0.07, 0.07, 0.08]);
     builder.add(None, object("Ground", Shape::Plane {}, asphalt));
     let facade = builder.glossy("Facade", [0.42, 0.4, 0.37], 0.4);
@@ -267,6 +272,8 @@ fn lamps(builder: &mut SceneBuilder) {
 /// A belt of rocks that drift and spin.
 pub(super) fn asteroids() -> Scene {
     let mut builder = SceneBuilder::new([0.006, 0.007, 0.012], [0.012, 0.012, 0.02], [0.05, 0.055, 0.07]);
+    // In space hardly any light comes from everywhere.
+    builder.shade(Shadowing { occlusion: false, ..Shadowing::default() });
     let rock = builder.matte("Rock", [0.24, 0.21, 0.185]);
     let palette =
         vec![rock, builder.matte("Iron ore", [0.26, 0.16, 0.11]), builder.matte("Carbon", [0.07, 0.07, 0.075])];

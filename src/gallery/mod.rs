@@ -25,13 +25,17 @@ mod scene_builder;
 mod shadows;
 mod shapes;
 mod showcase;
+mod templates;
 mod textures;
+mod thumbnails;
 mod write;
 
 use isolith_scene::Scene;
 
 pub use crowds::{boxes, crowd, spheres};
 pub use random_groups::random;
+pub use templates::{Template, templates};
+pub use thumbnails::thumbnail;
 pub use write::{install, write_all};
 
 /// The scene that opens first.

@@ -40,6 +40,8 @@ impl fmt::Display for Canceled {
 enum Visibility {
     /// Listed, and can be canceled.
     Listed,
+    /// The same, but not by Escape: a stray key must not end an hour of work.
+    Lasting,
     /// Listed, and runs to its end: stopping halfway would help nobody.
     WithoutCancel,
     /// Not listed: it is short, and nobody waits for it.
@@ -66,6 +68,11 @@ impl Task {
     /// A task that can be canceled. The name describes the activity: "Opening pawn.json".
     pub fn new(name: impl Into<String>) -> Self {
         Self::with(name, Visibility::Listed, Cancel::default())
+    }
+
+    /// A task that can be canceled, but is not by [`Jobs::cancel_foremost`].
+    pub fn lasting(name: impl Into<String>) -> Self {
+        Self::with(name, Visibility::Lasting, Cancel::default())
     }
 
     /// A task that cannot be canceled.
@@ -124,7 +131,7 @@ impl Task {
 
     /// Whether the task can be canceled.
     pub fn can_cancel(&self) -> bool {
-        self.0.visibility == Visibility::Listed
+        matches!(self.0.visibility, Visibility::Listed | Visibility::Lasting)
     }
 
     /// Cancels the task, if that is possible.
@@ -219,9 +226,14 @@ impl Jobs {
         tasks.iter().find(|task| task.can_cancel()).or(tasks.first()).cloned()
     }
 
-    /// Cancels the foremost task; false if it cannot be canceled.
+    /// The task that Escape cancels: the oldest that is neither lasting nor without cancel.
+    pub fn escapable(&self) -> Option<Task> {
+        self.listed().into_iter().find(|task| task.0.visibility == Visibility::Listed)
+    }
+
+    /// Cancels the task that Escape cancels; false if there is none.
     pub fn cancel_foremost(&self) -> bool {
-        let task = self.foremost().filter(Task::can_cancel);
+        let task = self.escapable();
         task.iter().for_each(Task::cancel);
         task.is_some()
     }
@@ -395,6 +407,16 @@ mod tests {
         });
         assert_eq!(end, JobEnd::Done(true));
         assert!(told.contains(&Some(0.5)), "{told:?}");
+    }
+
+    #[test]
+    fn lasting_work_ends_by_its_own_cancel_only() {
+        let (jobs, (go, gate)) = (Jobs::default(), sync_channel::<()>(0));
+        let rendering = jobs.start(Task::lasting("Rendering"), move |_| gate.recv().is_ok());
+        assert!(!jobs.cancel_foremost() && jobs.foremost().is_some_and(|task| task.can_cancel()));
+        rendering.task().cancel();
+        assert!(jobs.listed().is_empty());
+        drop(go);
     }
 
     #[test]

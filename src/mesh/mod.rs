@@ -31,6 +31,7 @@ mod schema;
 mod surface;
 mod texture;
 mod triangle_mesh;
+mod voxels;
 mod watch;
 mod whole;
 
@@ -43,4 +44,5 @@ pub use model_pose::{ClipTime, ModelPose};
 pub use surface::{Surface, TextureUse};
 pub use texture::{Sampler, Texture, Wrap};
 pub use triangle_mesh::{MeshHit, MeshLook, MeshPart, TriangleMesh};
+pub use voxels::{Voxelized, bricks_key, bricks_of, usual_resolution, voxel_for, voxelized};
 pub use watch::Watcher;

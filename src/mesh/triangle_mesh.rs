@@ -254,7 +254,8 @@ impl TriangleMesh {
         (b - a).cross(c - a)
     }
 
-    fn normal_at(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
+    /// The normals of the corners, mixed; of unit length.
+    pub(super) fn normal_at(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
         let corners = self.vertices(triangle);
         let mixed: DVec3 = (0..3).map(|i| point(self.normals[corners[i]]) * weights[i]).sum();
         mixed.try_normalize().or_else(|| self.face_normal(triangle).try_normalize()).unwrap_or(DVec3::Y)

@@ -50,7 +50,7 @@ use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
 use shadows::{SeenScene, ShadowWork};
 pub use slot::Slot;
-pub use still::Film;
+pub use still::{Film, StillWatch};
 pub use timings::PassTime;
 use timings::PassTimings;
 

@@ -108,6 +108,12 @@ pub const PATH_LENGTH: Limits = Limits::new([1.0, MAX_PATH as f64], [1.0, MAX_PA
 
 /// Characters of the name of an animation clip.
 pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, MAX_NAME as f64], "").whole();
+/// The same where there may be none.
+pub const OPTIONAL_PATH_LENGTH: Limits = Limits::new([0.0, MAX_PATH as f64], [0.0, MAX_PATH as f64], "").whole();
+/// Voxels along the longest side of a model; 0 leaves the choice to the model.
+pub const VOXELS: Limits = Limits::new([0.0, 512.0], [0.0, isolith_bricks::RESOLUTIONS[1] as f64], "").whole();
+/// Size of a voxel of a model; 0 for none.
+pub const VOXEL_SIZE: Limits = Limits::new([0.0, 0.05], [0.0, 1e3], "m");
 /// Times within an animation clip.
 pub const CLIP_TIME: Limits = Limits::new([0.0, 10.0], [-1e6, 1e6], "s");
 /// Speeds of animation clips.

@@ -12,9 +12,11 @@ use super::attachment::Attachment;
 use super::drawn::{Corners, Points};
 use super::heights::Heights;
 use super::limits::{
-    ARC, CONE, CONSTANT, FOLD, FREQUENCY, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES, POSITION, POWER, REACH, SECTOR,
-    SEED, SIDES, SIZE, SQUARES, THICKNESS, TURN, UNIT, WAVELENGTH,
+    ARC, CLIP_NAME_LENGTH, CLIP_TIME, CONE, CONSTANT, FOLD, FREQUENCY, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES,
+    OPTIONAL_PATH_LENGTH, POSITION, POWER, REACH, SECTOR, SEED, SIDES, SIZE, SQUARES, THICKNESS, TURN, UNIT,
+    VOXEL_SIZE, VOXELS, WAVELENGTH,
 };
+use super::model_file::ModelFile;
 use isolith_font::Face;
 
 #[macro_use]
@@ -393,5 +395,23 @@ shapes! {
         /// How fast they run: periods of the longest wave per second.
         #[serde(default)]
         speed: f64 = 0.0, FREQUENCY;
+    }
+    /// The solid of a glTF model, as distances in voxels.
+    MeshField = sdf_mesh_field with data, "Mesh field" {
+        /// A .gltf or .glb file, relative to the scene's folder.
+        #[serde(default)]
+        file: ModelFile = ModelFile::default(), OPTIONAL_PATH_LENGTH;
+        /// The animation clip that poses it, by its name or its number in the file; empty for the rest pose.
+        #[serde(default)]
+        clip: String = String::new(), CLIP_NAME_LENGTH.labeled("Clip");
+        /// The moment of the clip.
+        #[serde(default)]
+        clip_time: f64 = 0.0, CLIP_TIME;
+        /// Voxels along its longest side; 0 leaves the choice to the model.
+        #[serde(default)]
+        resolution: f64 = 0.0, VOXELS;
+        /// Size of a voxel, in place of the resolution; 0 for none.
+        #[serde(default)]
+        voxel_size: f64 = 0.0, VOXEL_SIZE;
     }
 }

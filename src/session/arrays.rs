@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::model_fields::ModelFields;
 use isolith_document::Document;
 use isolith_field::{FlatScene, Flattener, is_quick};
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
@@ -14,8 +15,8 @@ pub(super) struct Arrays {
     flattener: Flattener,
     /// The last successful one.
     scene: Arc<FlatScene>,
-    /// The revision and the moment handled last.
-    handled: Option<(u64, f64)>,
+    /// The revision, the moment and the revision of the fields of models handled last.
+    handled: Option<(u64, f64, u64)>,
     problem: Option<String>,
     job: Option<Job<FlattenReply>>,
     is_canceled: bool,
@@ -28,13 +29,13 @@ const CANCELED: &str = "preparing it was canceled";
 
 impl Arrays {
     /// Arrays of this document as it is that were made elsewhere.
-    pub fn prepared(flattener: Flattener, scene: Arc<FlatScene>, document: &Document) -> Self {
-        Self { flattener, scene, handled: Some(state_of(document)), ..Self::default() }
+    pub fn prepared(flattener: Flattener, scene: Arc<FlatScene>, document: &Document, fields: &ModelFields) -> Self {
+        Self { flattener, scene, handled: Some(state_of(document, fields)), ..Self::default() }
     }
 
     /// No arrays of this document as it is, for this reason.
-    pub fn refused(problem: String, document: &Document) -> Self {
-        Self { problem: Some(problem), handled: Some(state_of(document)), ..Self::default() }
+    pub fn refused(problem: String, document: &Document, fields: &ModelFields) -> Self {
+        Self { problem: Some(problem), handled: Some(state_of(document, fields)), ..Self::default() }
     }
 
     pub fn scene(&self) -> &Arc<FlatScene> {
@@ -61,30 +62,30 @@ impl Arrays {
     }
 
     /// Updates the arrays, or starts a job for it, and takes over the result of a job. Returns whether anything is new.
-    pub fn follow(&mut self, jobs: &Jobs, document: &Document) -> bool {
-        let state = state_of(document);
+    pub fn follow(&mut self, jobs: &Jobs, document: &Document, fields: &ModelFields) -> bool {
+        let state = state_of(document, fields);
         let is_new = self.handled != Some(state);
         // A step in time waits for the step before it, which would otherwise never be shown.
-        let is_step = self.handled.is_some_and(|(revision, _)| revision == state.0);
+        let is_step = self.handled.is_some_and(|(revision, ..)| revision == state.0);
         let waits = is_step && self.job.is_some();
         if is_new && !waits {
-            self.start(jobs, document);
+            self.start(jobs, document, fields);
             self.handled = Some(state);
         }
         self.poll() || (is_new && !waits)
     }
 
-    fn start(&mut self, jobs: &Jobs, document: &Document) {
+    fn start(&mut self, jobs: &Jobs, document: &Document, fields: &ModelFields) {
         (self.job, self.is_canceled) = (None, false);
-        let (scene, time) = (document.resting(), document.time());
-        if let Some(flat) = self.flattener.update(scene, time) {
+        let (scene, time) = (fields.filled(document.resting()), document.time());
+        if let Some(flat) = self.flattener.update(&scene, time) {
             self.take(Ok(flat));
-        } else if is_quick(scene) {
-            let result = self.flattener.flatten(scene, time).map_err(|error| error.to_string());
+        } else if is_quick(&scene) {
+            let result = self.flattener.flatten(&scene, time).map_err(|error| error.to_string());
             self.take(result);
         } else {
             let flattener = std::mem::take(&mut self.flattener);
-            self.job = Some(flatten_by_job(jobs, Arc::clone(scene), time, flattener));
+            self.job = Some(flatten_by_job(jobs, scene, time, flattener));
         }
     }
 
@@ -115,8 +116,8 @@ impl Arrays {
 }
 
 /// What the arrays of a document depend on.
-fn state_of(document: &Document) -> (u64, f64) {
-    (document.revision(), document.time())
+fn state_of(document: &Document, fields: &ModelFields) -> (u64, f64, u64) {
+    (document.revision(), document.time(), fields.revision())
 }
 
 fn flatten_by_job(jobs: &Jobs, scene: Arc<Scene>, time: f64, mut flattener: Flattener) -> Job<FlattenReply> {

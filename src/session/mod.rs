@@ -7,28 +7,49 @@
 //! | `open` | a document read and prepared by one job |
 //! | `arrays` | the arrays of a changing document |
 //! | `models` | the models that it names, read in the background and again when their files change |
+//! | `bricks` | models as distance bricks, made in the background |
+//! | `brick_cache` | their files |
+//! | `model_fields` | the shapes that are made of them |
 //! | `notice` | messages of a session |
+//! | `render_order`, `frames` | orders to render pictures into files, by a dialog or from the command line |
+//! | `scene_cost` | what a picture takes, as measured |
+//! | `studio` | what a renderer does for a user interface beside the frames |
 
 mod arrays;
+mod brick_cache;
+mod bricks;
+mod frames;
+mod model_fields;
 mod models;
 mod notice;
 mod open;
 mod prepare;
+mod render_order;
+mod scene_cost;
+mod studio;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use arrays::Arrays;
+pub use brick_cache::CACHE_FOLDER;
+pub use frames::{FrameRange, numbered, parse_fps};
+pub use model_fields::{ModelFields, pose_of};
 use models::Models;
 pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};
 pub use prepare::PreparedScene;
+pub use render_order::{
+    DEFAULT_SAMPLES, DEFAULT_SIZE, MAX_SAMPLES, MAX_SIDE, Moments, RenderOrder, RenderSettings, check_size, ending,
+};
+pub use scene_cost::{MeasuredView, NodeCost, PassCost, SceneCost};
+pub use studio::{RenderRefusal, RenderReport, SharedStudio, StillPreview, Studio};
 
 use isolith_document::Document;
 use isolith_field::FlatScene;
 use isolith_jobs::{Job, Jobs, Task};
-use isolith_mesh::MeshLibrary;
-use isolith_scene::NodeId;
+use isolith_mesh::{MeshLibrary, ModelPose};
+use isolith_scene::{NodeId, Scene};
 
 /// The session of one document; see the module.
 #[derive(Debug, Default)]
@@ -36,6 +57,7 @@ pub struct SceneSession {
     jobs: Jobs,
     arrays: Arrays,
     models: Models,
+    fields: ModelFields,
 }
 
 impl SceneSession {
@@ -47,6 +69,7 @@ impl SceneSession {
     /// Forgets everything, for a document that is not prepared yet; its models lie in this folder.
     pub fn reset(&mut self, folder: Option<PathBuf>) {
         self.arrays = Arrays::default();
+        self.fields.set_folder(folder.clone());
         self.models.set_folder(folder);
     }
 
@@ -55,35 +78,40 @@ impl SceneSession {
         let Opened { document, prepared } = opened;
         self.reset(document.path().and_then(folder_of));
         match prepared {
-            Ok(PreparedScene { flattener, flat, library }) => {
+            Ok(PreparedScene { flattener, flat, library, .. }) => {
                 self.models.take_new(library);
-                self.arrays = Arrays::prepared(flattener, flat, &document);
+                self.arrays = Arrays::prepared(flattener, flat, &document, &self.fields);
             }
-            Err(problem) => self.arrays = Arrays::refused(problem, &document),
+            Err(problem) => self.arrays = Arrays::refused(problem, &document, &self.fields),
         }
         document
     }
 
     /// Sets the folder of the models.
     pub fn set_folder(&mut self, folder: Option<PathBuf>) {
+        self.fields.set_folder(folder.clone());
         self.models.set_folder(folder);
     }
 
     /// Follows the document, and takes over the results of jobs. Called once a frame. Returns whether anything is new.
     pub fn follow(&mut self, document: &Document) -> bool {
-        let has_arrays = self.arrays.follow(&self.jobs, document);
-        let has_models = self.models.follow(&self.jobs, self.arrays.scene(), has_arrays);
+        let requests = document.resting().model_requests();
+        self.fields.follow(&self.jobs, &requests, self.models.library());
+        let has_arrays = self.arrays.follow(&self.jobs, document, &self.fields);
+        let poses: Vec<ModelPose> = requests.iter().map(pose_of).collect();
+        let has_models = self.models.follow(&self.jobs, self.arrays.scene(), &poses, has_arrays);
         has_arrays || has_models
     }
 
     /// Whether arrays or models of the document are being prepared.
     pub fn is_preparing(&self) -> bool {
-        self.arrays.is_under_way() || self.models.is_under_way()
+        self.arrays.is_under_way() || self.models.is_under_way() || self.fields.is_under_way()
     }
 
     /// Repeats canceled work.
     pub fn prepare_again(&mut self) {
         self.arrays.prepare_again();
+        self.fields.make_again();
     }
 
     /// Whether preparing was canceled, so that the arrays are older than the document.
@@ -106,6 +134,16 @@ impl SceneSession {
         self.models.problem()
     }
 
+    /// A node whose model cannot be a field, and why.
+    pub fn field_problem(&self, document: &Document) -> Option<(NodeId, String)> {
+        self.fields.problems(document.resting()).next()
+    }
+
+    /// A scene with the bricks of its models, where they are made.
+    pub fn filled(&self, scene: &Arc<Scene>) -> Arc<Scene> {
+        self.fields.filled(scene)
+    }
+
     /// The library of models.
     pub fn library(&self) -> &MeshLibrary {
         self.models.library()
@@ -123,7 +161,9 @@ impl SceneSession {
 
     /// The messages since the last call.
     pub fn take_notices(&mut self) -> Vec<Notice> {
-        self.models.take_notices()
+        let mut notices = self.models.take_notices();
+        notices.extend(self.fields.take_notices());
+        notices
     }
 
     /// Starts a job that reads and prepares a document while the current one stays.

@@ -80,13 +80,13 @@ impl Models {
         }
     }
 
-    /// Starts reading the models that the arrays name, and takes over the results. Called once a frame. Returns whether
+    /// Starts reading the models that the arrays name and those that are fields, and takes over the results. Called once a frame. Returns whether
     /// anything is new.
-    pub fn follow(&mut self, jobs: &Jobs, flat: &FlatScene, is_new: bool) -> bool {
+    pub fn follow(&mut self, jobs: &Jobs, flat: &FlatScene, fields: &[ModelPose], is_new: bool) -> bool {
         self.take_reread();
         self.take_read();
         if self.reading.is_none() {
-            self.read_missing(jobs, flat);
+            self.read_missing(jobs, flat, fields);
         }
         let revision = self.library.revision();
         let is_changed = self.revision != Some(revision);
@@ -128,11 +128,11 @@ impl Models {
         }
     }
 
-    fn read_missing(&mut self, jobs: &Jobs, flat: &FlatScene) {
-        let missing = flat.meshes.iter().filter(|mesh| self.library.known(&mesh.model).is_none());
-        let poses: Vec<ModelPose> = missing.map(|mesh| mesh.model.clone()).collect();
+    fn read_missing(&mut self, jobs: &Jobs, flat: &FlatScene, fields: &[ModelPose]) {
+        let all = || flat.meshes.iter().map(|mesh| &mesh.model).chain(fields);
+        let poses: Vec<ModelPose> = all().filter(|pose| self.library.known(*pose).is_none()).cloned().collect();
         let name = match &*poses {
-            [] => return self.library.keep_poses(flat.meshes.iter().map(|mesh| &mesh.model)),
+            [] => return self.library.keep_poses(all()),
             [one] => format!("Reading {}", one.path),
             many => format!("Reading {} models", many.len()),
         };

@@ -46,8 +46,8 @@ impl Opened {
     /// The task was canceled.
     pub fn of(document: Document, task: &Task) -> Result<Self, String> {
         let folder = document.path().and_then(folder_of);
-        let prepared =
-            PreparedScene::of(document.resting(), document.time(), folder, task).map_err(|error| error.to_string());
+        let prepared = PreparedScene::without_fields(document.resting(), document.time(), folder, task)
+            .map_err(|error| error.to_string());
         let prepared = prepared.transpose().ok_or_else(|| Canceled.to_string())?;
         Ok(Self { document, prepared })
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::model_fields::ModelFields;
 use isolith_field::{FlatScene, FlattenError, Flattener};
 use isolith_jobs::Task;
 use isolith_mesh::{MeshLibrary, ModelPose};
@@ -18,34 +19,67 @@ pub struct PreparedScene {
     pub flat: Arc<FlatScene>,
     /// The models, or the errors of those that cannot be read.
     pub library: MeshLibrary,
+    /// The models that are fields.
+    pub fields: ModelFields,
     /// The flattener of the arrays, for updates after small changes.
     pub(super) flattener: Flattener,
 }
 
 impl PreparedScene {
-    /// Prepares the scene at `time` seconds, with its models from this folder; `None` if the task was canceled.
+    /// Prepares the scene at `time` seconds, with its models from this folder; `None` if the task was canceled. Models
+    /// that are fields are made.
     ///
     /// # Errors
     /// The scene is beyond a limit.
-    pub fn of(scene: &Scene, time: f64, folder: Option<PathBuf>, task: &Task) -> Result<Option<Self>, FlattenError> {
+    pub fn of(
+        scene: &Arc<Scene>,
+        time: f64,
+        folder: Option<PathBuf>,
+        task: &Task,
+    ) -> Result<Option<Self>, FlattenError> {
+        let mut library = MeshLibrary::new(folder.clone());
+        let mut fields = ModelFields::new(folder);
+        if !fields.make_all(&scene.model_requests(), &mut library, task) {
+            return Ok(None);
+        }
+        Self::with(scene, time, (library, fields), task)
+    }
+
+    /// The same without fields of models, which take long: placeholders stand in for them.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn without_fields(
+        scene: &Arc<Scene>,
+        time: f64,
+        folder: Option<PathBuf>,
+        task: &Task,
+    ) -> Result<Option<Self>, FlattenError> {
+        Self::with(scene, time, (MeshLibrary::new(folder), ModelFields::default()), task)
+    }
+
+    fn with(
+        scene: &Arc<Scene>,
+        time: f64,
+        (mut library, fields): (MeshLibrary, ModelFields),
+        task: &Task,
+    ) -> Result<Option<Self>, FlattenError> {
         task.set_stage("preparing");
         let mut flattener = Flattener::default();
-        let Some(flat) = flattener.flatten_until(scene, time, task.flag())? else { return Ok(None) };
+        let Some(flat) = flattener.flatten_until(&fields.filled(scene), time, task.flag())? else { return Ok(None) };
         task.set_progress(FLATTENED);
-        let mut library = MeshLibrary::new(folder);
         let poses: Vec<_> = flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
         let is_whole = read_models(&poses, &mut library, task, FLATTENED);
-        Ok(is_whole.then_some(Self { flat, library, flattener }))
+        Ok(is_whole.then_some(Self { flat, library, fields, flattener }))
     }
-}
 
-impl PreparedScene {
     /// Prepares the same scene at another moment, which costs what has changed; false if the task was canceled.
     ///
     /// # Errors
     /// The scene is beyond a limit.
-    pub fn advance(&mut self, scene: &Scene, time: f64, task: &Task) -> Result<bool, FlattenError> {
-        let Some(flat) = self.flattener.flatten_until(scene, time, task.flag())? else { return Ok(false) };
+    pub fn advance(&mut self, scene: &Arc<Scene>, time: f64, task: &Task) -> Result<bool, FlattenError> {
+        let scene = self.fields.filled(scene);
+        let Some(flat) = self.flattener.flatten_until(&scene, time, task.flag())? else { return Ok(false) };
         self.flat = flat;
         let poses: Vec<_> = self.flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
         self.library.keep_poses(poses.iter());

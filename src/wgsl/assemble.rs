@@ -49,8 +49,21 @@ pub fn assemble_with(
     out += &lookahead::constants(evaluator, options);
     let modifiers = (!ops.modifiers.is_empty()).then_some("MODIFIERS");
     let features: Vec<&str> = features.iter().copied().chain(modifiers).collect();
-    out += &resolve(entry, &features, &|name| generated(name, evaluator, options))?;
-    Ok(out)
+    out += &resolve(entry, &features, &|name| match name {
+        "generated/instancer.wgsl" => Some(instancer(&features)),
+        _ => generated(name, evaluator, options),
+    })?;
+    // One of several instancers has the name of the only one: the same files serve both.
+    Ok(if features.contains(&SCENE_COPIES) { out.replace("instancer.", "instancers[instancer_at].") } else { out })
+}
+
+/// The feature of passes that query the whole scene: it has instancers.
+pub const SCENE_COPIES: &str = "SCENE_COPIES";
+
+/// The bindings of the instancer of a dispatch, or of all.
+fn instancer(features: &[&str]) -> String {
+    let file = if features.contains(&SCENE_COPIES) { "instancers_of_scene" } else { "instancer_of_dispatch" };
+    format!("#include \"copy/{file}.wgsl\"")
 }
 
 /// The source of a shader that evaluates no field.

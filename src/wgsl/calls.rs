@@ -11,7 +11,8 @@ use isolith_scene::ShapeKind;
 
 /// The line that includes a shape's function.
 pub fn shape_include(kind: ShapeKind) -> String {
-    format!("#include \"sdf/{}.wgsl\"", kind.function().trim_start_matches("sdf_"))
+    let texels = if kind == ShapeKind::MeshField { "#include \"common/bricks.wgsl\"\n" } else { "" };
+    format!("{texels}#include \"sdf/{}.wgsl\"", kind.function().trim_start_matches("sdf_"))
 }
 
 /// The line that includes a shape's function together with its gradient.

@@ -27,10 +27,16 @@ pub fn gradient_wgsl(function: &str) -> Option<String> {
 
 /// A source with placeholders for the rows it reads, whose derivative is zero.
 pub(super) fn with_rows(text: String) -> String {
-    if !text.contains("scene_row(") {
-        return text;
+    let mut text = text;
+    for (read, placeholder) in [
+        ("scene_row(", "fn scene_row(at: u32) -> vec4f { return vec4f(f32(at)); }"),
+        ("bricks_texel(", "fn bricks_texel(at: u32) -> vec4u { return vec4u(at); }"),
+    ] {
+        if text.contains(read) {
+            text = format!("{text}\n{placeholder}\n");
+        }
     }
-    format!("{text}\nfn scene_row(at: u32) -> vec4f {{ return vec4f(f32(at)); }}\n")
+    text
 }
 
 /// The derivatives of one of three functions of a modifier: `pull_mod_x` (the point in the copy along a vector),

@@ -161,9 +161,9 @@ impl InstructionCounter<'_> {
         }
     }
 
-    /// Whether a function reads a payload row.
+    /// Whether a function reads a payload row or a texel of bricks.
     fn is_row(&self, handle: Handle<Function>) -> bool {
-        self.module.functions[handle].name.as_deref() == Some("scene_row")
+        matches!(self.module.functions[handle].name.as_deref(), Some("scene_row" | "bricks_texel"))
     }
 
     /// Number of scalars in the value of an expression.

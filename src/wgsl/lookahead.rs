@@ -136,7 +136,7 @@ mod tests {
     /// default parameters, minus the allowance of a concavity within the chord's length of the first end.
     fn worst(kind: ShapeKind, concavity: impl Fn([f64; 3], f64) -> f64) -> f64 {
         let prepared = isolith_field::PreparedShape::new(&kind.default_shape());
-        let field = |p: [f64; 3]| shape_distance(kind, p, &prepared.parameters, &|row| prepared.payload[row]);
+        let field = |p: [f64; 3]| shape_distance(kind, p, &prepared.parameters, &prepared);
         let mut random = Random(1);
         let mut worst = 0.0_f64;
         for _ in 0..20_000 {

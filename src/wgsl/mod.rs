@@ -32,7 +32,7 @@ mod random;
 mod specialize;
 mod structure;
 
-pub use assemble::{assemble, assemble_featured, assemble_plain, assemble_with};
+pub use assemble::{SCENE_COPIES, assemble, assemble_featured, assemble_plain, assemble_with};
 pub use evaluator::Evaluator;
 pub use files::{FILES, ShaderError};
 pub use leaf_cost::tapes_are_cheaper;

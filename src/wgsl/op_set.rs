@@ -99,9 +99,9 @@ impl OpSet {
     /// be far below the distance, and so may fields divided by the stretch of a deformation. Then only a change of sign
     /// is a hit, and oversteps are short: longer ones would pass bumps of a fraction of a pixel.
     pub(super) fn is_rough(&self) -> bool {
-        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, Ocean, Terrain};
+        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, MeshField, Ocean, Terrain};
         let is_rough = |kind: &ShapeKind| {
-            matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | Terrain | Heightmap | Ocean)
+            matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | MeshField | Terrain | Heightmap | Ocean)
         };
         self.shapes.iter().any(is_rough) || self.modifiers.iter().any(|kind| field::is_rough(*kind))
     }
@@ -121,6 +121,8 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
         ShapeKind::Mandelbulb => [4, 240],
         ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Text => [3, 0],
         ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
+        // Over its levels.
+        ShapeKind::MeshField => [1, isolith_bricks::MAX_LEVELS as u32],
         _ => [0, 0],
     }
 }

@@ -129,3 +129,27 @@ fn a_lens_blurs_stills_of_several_samples_and_is_refused_beyond_its_limit() {
     let arguments = ["render", "scene.json", "-o", "x.png", "--camera", "front", "--size", "24x16"];
     place.run(&arguments).failed(2, &["aperture", "8192"]);
 }
+
+#[test]
+fn layers_hold_the_same_numbers_as_files_of_their_own() {
+    let place = Place::new();
+    let options = ["--samples", "3", "--layers", "--depth", "depth.exr", "--node-id", "id.exr"];
+    render(&place, "all.exr", &options);
+    render(&place, "light.exr", &["--samples", "3"]);
+    let channels = |name: &str| {
+        let image = read_all_flat_layers_from_file(place.path(name)).expect("an EXR file");
+        let list = image.layer_data[0].channel_data.list.clone();
+        list.into_iter().map(|channel| (channel.name.to_string(), channel.sample_data)).collect::<Vec<_>>()
+    };
+    let all = channels("all.exr");
+    let of = |name: &str| &all.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no {name}")).1;
+    for (name, samples) in channels("light.exr") {
+        assert_eq!(*of(&name), samples, "{name}");
+    }
+    assert_eq!(*of("depth.Z"), channels("depth.exr")[0].1);
+    assert_eq!(*of("node.id"), channels("id.exr")[0].1);
+    let picture = ["render", "scene.json", "-o", "x.png", "--layers"];
+    place.run(&picture).failed(2, &["--layers", ".exr"]);
+    let reference = ["render", "scene.json", "-o", "x.exr", "--layers", "--reference"];
+    place.run(&reference).failed(2, &["--layers"]);
+}

@@ -9,6 +9,7 @@ use isolith::field::eval::{heightmap_height, ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
 use isolith::scene::{Shape, ShapeKind, profile_curve, text_profile, tube_curve};
 
+use super::bricks;
 use super::samples::evaluate;
 use super::surfaces::{Patch, outside_of, sphere, turned};
 
@@ -140,6 +141,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             let is_below = || p.y < height(&PreparedShape::new(shape), p.x, p.z);
             p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && is_below()
         }
+        Shape::MeshField { file, .. } => bricks::interpolated(file.bricks().finest(), p) < 0.0,
         _ => panic!("stands in `surfaces`"),
     }
 }
@@ -164,6 +166,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
         Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => {
             heightfield(shape, *size)
         }
+        Shape::MeshField { file, .. } => bricks::patches(&file.bricks().all()[0]),
         _ => panic!("stands in `surfaces`"),
     }
 }

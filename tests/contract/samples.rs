@@ -137,7 +137,7 @@ pub fn extreme(kind: ShapeKind, count: usize) -> Vec<Shape> {
 
 /// The field of a shape.
 pub fn evaluate<T: Real>(prepared: &PreparedShape, p: [T; 3]) -> T {
-    shape_distance(prepared.kind, p, &prepared.parameters, &|row| prepared.payload[row])
+    shape_distance(prepared.kind, p, &prepared.parameters, prepared)
 }
 
 /// The size of a shape: the largest of its parameters, or of its bounds if it has a payload.

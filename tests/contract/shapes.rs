@@ -21,10 +21,12 @@ fn with_gradient(shape: &Shape, p: DVec3) -> (f64, DVec3) {
 }
 
 /// Whether the field must equal the distance. It may be just a bound inside of self-intersecting tubes and rounded
-/// notches, everywhere for terrains, heightmaps and oceans, and for extrusions and texts with a rounding.
+/// notches, everywhere for terrains, heightmaps, oceans and models, and for extrusions and texts with a rounding.
 fn is_exact_at(shape: &Shape, f: f64) -> bool {
     let meets_itself = match *shape {
-        Shape::Terrain { .. } | Shape::Ocean { .. } | Shape::Heightmap { .. } => return false,
+        Shape::Terrain { .. } | Shape::Ocean { .. } | Shape::Heightmap { .. } | Shape::MeshField { .. } => {
+            return false;
+        }
         Shape::Extrusion { rounding, .. } | Shape::Text { rounding, .. } => return rounding == 0.0,
         Shape::Torus { major_radius, minor_radius } | Shape::Link { major_radius, minor_radius, .. } => {
             minor_radius > major_radius

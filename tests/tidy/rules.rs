@@ -9,34 +9,36 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("guard", &[]),
     ("jobs", &["guard"]),
     ("font", &["geometry"]),
-    ("scene", &["font", "geometry", "guard", "jobs"]),
-    ("mesh", &["geometry", "guard"]),
+    ("bricks", &["geometry"]),
+    ("scene", &["bricks", "font", "geometry", "guard", "jobs"]),
+    ("mesh", &["bricks", "geometry", "guard"]),
     ("document", &["geometry", "jobs", "scene"]),
     ("gallery", &["geometry", "scene"]),
-    ("field", &["geometry", "guard", "jobs", "mesh", "scene"]),
-    ("wgsl", &["field", "scene"]),
-    ("render", &["field", "geometry", "guard", "mesh", "scene", "wgsl"]),
-    ("session", &["document", "field", "geometry", "jobs", "mesh", "scene"]),
+    ("field", &["bricks", "geometry", "guard", "jobs", "mesh", "scene"]),
+    ("wgsl", &["bricks", "field", "scene"]),
+    ("render", &["bricks", "field", "geometry", "guard", "mesh", "scene", "wgsl"]),
+    ("session", &["bricks", "document", "field", "geometry", "jobs", "mesh", "scene"]),
     ("editor", &["document", "field", "geometry", "guard", "jobs", "mesh", "scene", "session"]),
+    ("export", &["field", "geometry", "jobs", "mesh", "render", "scene", "session"]),
     ("bench", &["field", "geometry", "guard", "mesh", "render", "scene", "wgsl"]),
     (
         "app",
         &[
-            "document", "editor", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh", "render", "scene",
-            "session", "wgsl",
+            "document", "editor", "export", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh", "render",
+            "scene", "session", "wgsl",
         ],
     ),
     (
         "cli",
         &[
-            "app", "bench", "document", "editor", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh",
-            "render", "scene", "session", "wgsl",
+            "app", "bench", "document", "editor", "export", "field", "font", "gallery", "geometry", "guard", "jobs",
+            "mesh", "render", "scene", "session", "wgsl",
         ],
     ),
 ];
 
 /// The modules of the program itself.
-pub const PROGRAM: &[&str] = &["app", "bench", "cli"];
+pub const PROGRAM: &[&str] = &["app", "bench", "cli", "export"];
 
 /// Crates that only some modules may name. An entry also covers crates whose names start with it.
 const CRATES: &[(&str, &[&str])] = &[
@@ -51,7 +53,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("harfrust", &["font"]),
     ("unicode_bidi", &["font"]),
     ("skrifa", &["font"]),
-    ("exr", &["scene", "cli"]),
+    ("exr", &["scene", "export"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];
@@ -65,6 +67,7 @@ const FILE_OWNERS: &[&str] = &[
     "src/document/recovery",
     "src/cli/",
     "src/gallery/write",
+    "src/session/brick_cache",
     "src/wgsl/disk",
 ];
 

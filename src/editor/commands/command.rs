@@ -24,6 +24,8 @@ pub enum Command {
     ReloadModels,
     /// List recoverable work.
     Recover,
+    /// Open the render dialog.
+    Render,
     /// Close the window.
     Quit,
     /// Undo the last change.
@@ -64,6 +66,10 @@ pub enum Command {
     SelectChildren,
     /// Select what is of the same kind.
     SelectSimilar,
+    /// Make fields of the selected models.
+    MeshToField,
+    /// Make triangles of the selected fields of models.
+    FieldToMesh,
     /// Select by a box that the next drag draws.
     SelectByBox,
     /// Show the selection alone, or everything again.
@@ -128,8 +134,20 @@ pub enum Command {
     ToggleOutline,
     /// Open the preferences.
     Preferences,
+    /// Open the page of help about what is under the pointer.
+    ShowHelp,
+    /// List the keys.
+    ShowKeys,
+    /// Show the latest changes of the program.
+    ShowNews,
+    /// Begin the tour.
+    StartTour,
+    /// Open the welcome.
+    ShowWelcome,
     /// Open the command palette.
     FindCommand,
+    /// Open the field doctor.
+    ExamineScene,
     /// Toggle the log.
     ShowMessages,
     /// Put all panels back into their usual places.

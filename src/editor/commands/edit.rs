@@ -3,16 +3,18 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CONTENT_COPY,
-    ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN, ICON_JOIN_FULL,
-    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LOCK, ICON_PLUMBING, ICON_REDO,
-    ICON_REMOVE_CIRCLE, ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM,
-    ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_LOCK, ICON_VISIBILITY_OFF,
+    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CHANGE_HISTORY,
+    ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON,
+    ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LOCK,
+    ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO,
+    ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIEW_IN_AR, ICON_VISIBILITY, ICON_VISIBILITY_LOCK,
+    ICON_VISIBILITY_OFF,
 };
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::instancer_edits::{can_instance, can_take_preset};
+use crate::mesh_conversion;
 use crate::seeds;
 use crate::state::EditorState;
 use isolith_scene::{InstancerPreset, Operator};
@@ -101,6 +103,25 @@ fn instancers() -> Vec<CommandInfo> {
             seeds::unlocked(document.scene(), document.selection()).next().is_some()
         }),
     ];
+    all.push(
+        row(
+            Command::MeshToField,
+            ICON_VIEW_IN_AR,
+            "Convert to field",
+            "Makes the selected meshes solids that blend and cut",
+        )
+        .when(|state| mesh_conversion::can_become_field(&state.session))
+        .group(),
+    );
+    all.push(
+        row(
+            Command::FieldToMesh,
+            ICON_CHANGE_HISTORY,
+            "Convert to mesh",
+            "Draws the selected mesh fields as triangles again",
+        )
+        .when(|state| mesh_conversion::can_become_mesh(&state.session)),
+    );
     all.extend(InstancerPreset::ALL.map(|preset| {
         let label = format!("Instancer preset: {}", preset.label().to_lowercase());
         CommandInfo::new(Menu::Presets, Command::ApplyPreset(preset), Icon::from(ICON_GRID_ON), label, preset.help())

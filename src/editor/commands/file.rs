@@ -3,7 +3,8 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_FOLDER_OPEN, ICON_HISTORY, ICON_LOGOUT, ICON_NOTE_ADD, ICON_REFRESH, ICON_SAVE, ICON_SAVE_AS,
+    ICON_FOLDER_OPEN, ICON_HISTORY, ICON_LOGOUT, ICON_NOTE_ADD, ICON_PHOTO_CAMERA, ICON_REFRESH, ICON_SAVE,
+    ICON_SAVE_AS,
 };
 
 use super::command::Command;
@@ -27,6 +28,9 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .when(|state| !state.flat().meshes.is_empty()),
         row(Command::Recover, ICON_HISTORY, "Recover unsaved work…", "Lists what was not saved when Isolith ended")
             .when(|state| state.can_recover),
+        row(Command::Render, ICON_PHOTO_CAMERA, "Render…", "Pictures in files: size, samples, format, frames")
+            .key(Modifiers::NONE, Key::F12)
+            .group(),
         row(Command::Quit, ICON_LOGOUT, "Quit", "Closes the window").key(CTRL, Key::Q).group(),
     ]
 }

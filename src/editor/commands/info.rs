@@ -39,6 +39,8 @@ pub enum Menu {
     Orientation,
     /// Keymaps; a submenu of View.
     Keymap,
+    /// What explains the program.
+    Help,
 }
 
 /// An icon of a command.

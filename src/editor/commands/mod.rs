@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `command` | the names of the commands |
-//! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `tools`, `add` and `view` |
+//! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `tools`, `add`, `view` and `help` |
 //! | `run` | their effects |
 //! | `entries`, `shortcuts` | commands in menus and by keys |
 
@@ -12,6 +12,7 @@ pub mod command;
 mod edit;
 pub mod entries;
 mod file;
+mod help;
 pub mod info;
 mod run;
 mod shortcuts;

@@ -7,11 +7,15 @@ use glam::DQuat;
 
 use super::command::Command;
 use crate::edit_session::EditSession;
+use crate::help::HelpTab;
 use crate::intent::Intent;
 use crate::log_panel::LOG;
 use crate::root::Editor;
 use crate::state::{EditorState, Request};
-use crate::{camera_view, dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
+use crate::{
+    camera_view, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion, relations, seeds,
+    selection,
+};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -31,6 +35,13 @@ impl Editor {
             Command::Reload => self.reload(ctx),
             Command::Recover => self.offer_lost_work(),
             Command::Quit => self.intend(Intent::Quit, ctx),
+            Command::ExamineScene => self.open_doctor(),
+            Command::ShowHelp => self.open_help(ctx),
+            Command::ShowKeys => self.open_help_tab(HelpTab::Keys),
+            Command::ShowNews => self.open_help_tab(HelpTab::News),
+            Command::StartTour => self.tour.start(),
+            Command::ShowWelcome => self.open_welcome(),
+            Command::Render => self.rendering.open(&self.state.session.document),
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
             Command::FindCommand => self.command_palette.open(),
@@ -84,6 +95,8 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::SelectByBox => state.view.wants_box = true,
         Command::Isolate => relations::isolate(state),
         Command::DropOnSurface => relations::drop_on_surface(state),
+        Command::MeshToField => mesh_conversion::to_fields(session),
+        Command::FieldToMesh => mesh_conversion::to_meshes(session),
         Command::ToggleVisible => selection::toggle_visible(session),
         Command::ShowAll => selection::show_all(session),
         Command::ToggleLock => selection::toggle_locked(session),
@@ -119,7 +132,14 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand | Command::Preferences => {}
+        Command::ShowHelp | Command::ShowKeys | Command::ShowNews | Command::StartTour | Command::ShowWelcome => {}
+        Command::Quit
+        | Command::Render
+        | Command::ExamineScene
+        | Command::AddAtPointer
+        | Command::AddMesh
+        | Command::FindCommand
+        | Command::Preferences => {}
     }
 }
 

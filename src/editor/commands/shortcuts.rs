@@ -41,9 +41,7 @@ impl Editor {
         }
         // Escape first cancels the current action.
         let jobs = self.state.derived.jobs();
-        if jobs.foremost().is_some_and(|task| task.can_cancel())
-            && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
-        {
+        if jobs.escapable().is_some() && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
             jobs.cancel_foremost();
         }
         while let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, |_| true)) {

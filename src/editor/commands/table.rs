@@ -4,11 +4,12 @@ use std::sync::LazyLock;
 
 use super::command::Command;
 use super::info::CommandInfo;
-use super::{add, edit, file, tools, view};
+use super::{add, edit, file, help, tools, view};
 use crate::state::EditorState;
 
 static TABLE: LazyLock<Vec<CommandInfo>> = LazyLock::new(|| {
-    let menus = [file::commands(), edit::commands(), tools::commands(), add::commands(), view::commands()];
+    let menus =
+        [file::commands(), edit::commands(), tools::commands(), add::commands(), view::commands(), help::commands()];
     menus.into_iter().flatten().collect()
 });
 

@@ -9,8 +9,8 @@ use egui_material_icons::icons::{
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
-use crate::camera_view::BOOKMARKS;
 use crate::navigation::Side;
+use crate::view_state::BOOKMARKS;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 

@@ -306,7 +306,7 @@ pub fn rows(kind: ShapeKind) -> &'static [HandleRow] {
         Of::Cylinder => CYLINDER,
         Of::CappedCone | Of::RoundCone => CONES,
         Of::Capsule => CAPSULE,
-        Of::Plane => &[],
+        Of::Plane | Of::MeshField => &[],
         Of::HexagonalPrism => HEXAGON,
         Of::Octahedron => const { &[along("radius", zero, y)] },
         Of::CappedTorus => CAPPED_TORUS,

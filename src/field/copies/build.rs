@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::dynamics::copy_envelope;
+use super::dynamics::{Envelope, copy_envelope};
 use super::gpu::place_rows;
 use super::hash::copy_hash;
 use super::instancer::{FlatInstancer, FlatLattice, FlatMask, Place, PlaceList, Placement};
 use super::moved_scene::node_dynamics;
-use super::variation::copy_of_place;
+use super::variation::{Copy, copy_of_place};
+use super::walk::copy_sphere;
 use crate::hierarchy::Hierarchy;
 use isolith_geometry::Aabb;
 use isolith_scene::{Instancer, Lattice, Mask, MaskSlot, Node, Variation};
@@ -72,7 +73,7 @@ pub fn flat_instancer(
             let size = DVec3::from_array([0, 1, 2].map(|i| if lattice.is_long(i) { lattice.spacing[i] } else { 0.0 }));
             flat.reach += 0.5 * variation.looseness * size;
         }
-        _ => flat.placement = listed(&flat, places),
+        _ => flat.placement = listed(&flat, places, envelope),
     }
     flat
 }
@@ -115,18 +116,37 @@ pub fn is_listed(instancer: &Instancer) -> bool {
     FlatLattice::of(&instancer.lattice).is_none() || instancer.snap != isolith_scene::Snap::Off
 }
 
+/// The GPU places copies in f32: so much of a radius is more than that may move them.
+const BOX_SLACK: f64 = 1e-4;
+
 /// The places that exist, with a tree over everything that a copy there may reach at any time.
-fn listed(flat: &FlatInstancer, places: Vec<Place>) -> Placement {
+fn listed(flat: &FlatInstancer, places: Vec<Place>, envelope: Envelope) -> Placement {
     let list = |places: Vec<Place>, boxes: &[Aabb]| {
         let tree = Hierarchy::build(boxes);
         let rows = place_rows(&places, &tree);
         Placement::List(Arc::new(PlaceList { places, tree, rows }))
     };
-    let all = FlatInstancer { placement: list(places.clone(), &[]), ..flat.clone() };
-    let exist = places.into_iter().enumerate().filter(|(at, _)| copy_of_place(&all, *at).is_some());
-    let places: Vec<Place> = exist.map(|(_, place)| place).collect();
-    let boxes: Vec<Aabb> = places.iter().map(|place| Aabb::from_center_half(place.position, flat.reach)).collect();
+    let at_rest = FlatInstancer { placement: list(places.clone(), &[]), dynamics: Vec::new(), ..flat.clone() };
+    let is_still = flat.dynamics.is_empty();
+    let box_of = |copy: &Copy| box_at_any_time(&at_rest, copy, envelope, is_still);
+    let exists = |(at, place)| Some((place, box_of(&copy_of_place(&at_rest, at)?)));
+    let (places, boxes): (Vec<Place>, Vec<Aabb>) = places.into_iter().enumerate().filter_map(exists).unzip();
     list(places, &boxes)
+}
+
+/// What a copy may reach at any time. `copy` is at rest.
+fn box_at_any_time(instancer: &FlatInstancer, copy: &Copy, envelope: Envelope, is_still: bool) -> Aabb {
+    let (center, radius) = copy_sphere(instancer, copy);
+    // Dynamics turn the middle of the sphere about the copy's own, about Y by any angle, and scale both.
+    let off = center - copy.position;
+    let tilted = off.length() * 2.0 * (0.5 * envelope.tilt.min(PI)).sin();
+    let scaled = (off.length() + radius) * (envelope.scale - 1.0).max(0.0);
+    let radius = radius * (1.0 + BOX_SLACK) + tilted + scaled + envelope.displacement;
+    if is_still {
+        return Aabb::from_center_half(center, DVec3::splat(radius));
+    }
+    let around = radius + off.x.hypot(off.z);
+    Aabb::from_center_half(copy.position + DVec3::Y * off.y, DVec3::new(around, radius, around))
 }
 
 impl FlatLattice {

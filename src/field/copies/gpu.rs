@@ -51,7 +51,7 @@ pub struct GpuInstancer {
     anchor: [i32; 3],
     mask_count: u32,
     spacing: [f32; 3],
-    padding_0: f32,
+    most_factor: f32,
     anchor_place: [f32; 3],
     stagger: f32,
     jitter: [f32; 3],
@@ -77,7 +77,8 @@ pub struct GpuInstancer {
     /// First row of the tree.
     pub first_row: u32,
     bounds_high: [f32; 3],
-    padding: u32,
+    /// Visits that a cell counts as in queries of the scene.
+    pub cell_visits: u32,
     reach: [f32; 3],
     padding_1: u32,
     shares: [f32; MAX_TYPES],
@@ -85,6 +86,8 @@ pub struct GpuInstancer {
     palette: [u32; MAX_PALETTE],
     masks: [GpuCopyMask; MAX_MASKS],
     dynamics: [GpuCopyDynamic; MAX_DYNAMICS],
+    /// The components of the types, for queries of the scene; `u32::MAX` for none.
+    pub components: [u32; MAX_TYPES],
 }
 
 /// Cells farther from the anchor than this are on no walk.
@@ -121,7 +124,7 @@ pub fn gpu_instancer(instancer: &FlatInstancer, eye: DVec3, first_row: u32) -> G
         anchor,
         mask_count: instancer.masks.len() as u32,
         spacing: vector(lattice.spacing),
-        padding_0: 0.0,
+        most_factor: instancer.least_scale().recip() as f32,
         anchor_place: vector(place),
         stagger: lattice.stagger as f32,
         jitter: vector(long * lattice.spacing * variation.looseness),

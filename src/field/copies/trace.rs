@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::eval::world_from_copy;
 use super::variation::Copy;
@@ -18,6 +18,38 @@ pub struct CopyRay {
     pub ray: Ray,
     /// Length there per length in the world.
     pub stretch: f64,
+    /// Directions there from those of the world.
+    space: DMat3,
+    /// Upper bound of the factor on any length, per stretch.
+    most: f64,
+}
+
+/// A cone that is more than this times as wide along one axis as along another is widened for proofs.
+const ROUND: f64 = 1.0001;
+/// The most that the radius of a widened cone grows by per distance: as an angle, sine and tangent.
+const WIDEST: f64 = 0.99;
+
+/// The same numbers are in `copies_cone` and `copies_enter` of `shaders/scene/copies.wgsl`.
+impl CopyRay {
+    /// Radius per distance of a round cone around the ray that holds the image of one with the radius `spread` per
+    /// distance in the world.
+    pub fn widened(&self, spread: f64) -> f64 {
+        if self.most <= ROUND {
+            return spread;
+        }
+        let sine = (spread * self.most).min(WIDEST);
+        sine / (1.0 - sine * sine).sqrt()
+    }
+
+    /// Factor on the radius per distance of a cone in the world for the disc of the area of its section there.
+    pub fn mean_size(&self) -> f64 {
+        if self.most <= ROUND { 1.0 } else { (self.space.determinant().abs() / self.stretch).sqrt() / self.stretch }
+    }
+
+    /// Length there, per length in the world, at right angles to a plane of this unit normal.
+    pub fn across(&self, normal: DVec3) -> f64 {
+        (self.space.inverse().transpose() * normal).length().recip()
+    }
 }
 
 /// The ray in the space of a copy.
@@ -30,6 +62,8 @@ pub fn copy_ray(flat: &FlatScene, component: &Component, copy: &Copy, ray: &Ray)
     CopyRay {
         ray: Ray { origin: copy_from_world.transform_point3(ray.origin), direction: direction / stretch },
         stretch,
+        space: copy_from_world.matrix3,
+        most: (instancer.least_scale() * copy.scale.min_element() * stretch).recip(),
     }
 }
 

@@ -39,15 +39,32 @@ pub struct CopyCone {
     pub spread: f64,
 }
 
+impl CopyCone {
+    /// Where the cone enters and leaves a box: its bounds along each axis alone, so it may leave later.
+    fn interval(&self, bounds: &Aabb) -> RayLimits {
+        let RayLimits { mut near, mut far } = self.limits;
+        for axis in 0..3 {
+            let (origin, direction) = (self.axis.origin[axis], self.axis.direction[axis]);
+            let [low, high] = [bounds.min[axis] - origin, bounds.max[axis] - origin];
+            let [ahead, behind] = if direction < 0.0 { [-high, -low] } else { [low, high] };
+            let speed = direction.abs();
+            near = near.max(ahead / (speed + self.spread).max(1e-12));
+            // A cone that is wider than steep never leaves on this axis.
+            if speed > self.spread || self.spread <= 0.0 {
+                far = far.min(behind / (speed - self.spread).max(1e-12));
+            }
+        }
+        RayLimits { near, far }
+    }
+}
+
 /// Visits the copies that a cone may meet. `visit` may move `limits.far` nearer, or break off.
 pub fn copies_along(
     instancer: &FlatInstancer,
     mut cone: CopyCone,
     visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
 ) {
-    let wide = instancer.bounds().expanded(cone.spread * cone.limits.far);
-    let Some((entry, exit)) = wide.ray_interval(&cone.axis) else { return };
-    cone.limits = RayLimits { near: cone.limits.near.max(entry), far: cone.limits.far.min(exit) };
+    cone.limits = cone.interval(&instancer.bounds());
     if cone.limits.near > cone.limits.far {
         return;
     }
@@ -160,9 +177,8 @@ fn along_list(
     let mut open: Vec<usize> = if list.tree.nodes.is_empty() { Vec::new() } else { vec![0] };
     while let Some(index) = open.pop() {
         let node = &list.tree.nodes[index];
-        let bounds: Aabb = node.bounds.expanded(cone.spread * cone.limits.far);
-        let Some((entry, exit)) = bounds.ray_interval(&cone.axis) else { continue };
-        if entry.max(cone.limits.near) > exit.min(cone.limits.far) {
+        let RayLimits { near, far } = cone.interval(&node.bounds);
+        if near > far {
             continue;
         }
         if !node.is_leaf() {

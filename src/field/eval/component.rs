@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{BlendParams, BlendResult, Dual, Real, op_join, shape_distance};
+use super::{BlendParams, BlendResult, Dual, Payload, Real, op_join, shape_distance};
 use crate::mixture::{Mixture, SurfaceMaterial, mixture_joined, mixture_material, mixture_of};
 use crate::modifier_table::{
     modifier_count, modifier_exists, modifier_point, modifier_scale, modifier_start, modifier_value,
@@ -27,6 +27,30 @@ pub fn gradient(flat: &FlatScene, component: &Component, p: DVec3) -> (f64, DVec
 /// The field of one entry at `p`, which is relative to the space of the entry.
 pub fn entry_field(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> f64 {
     operand(flat, component, index, at(p))
+}
+
+/// The field of one entry with its gradient at `p`, which is relative to the space of the entry.
+pub fn entry_gradient(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> (f64, DVec3) {
+    let Dual { v, d } = operand(flat, component, index, at(p));
+    (v, d)
+}
+
+/// The result of the first operands of a fold, those in `range`, at `p`.
+pub fn partial_field(flat: &FlatScene, component: &Component, range: Range<usize>, p: DVec3) -> f64 {
+    fold(flat, component, range, at(p))
+}
+
+/// The point in the space of what an entry holds, of a modifier in its first copy; `None` for leaves and runs, which
+/// hold nothing.
+pub fn content_point(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> Option<DVec3> {
+    let node = &flat.nodes[index];
+    if node.is_leaf() || node.is_run() {
+        return None;
+    }
+    let Some(placing) = component.placing(flat, index) else { return Some(p) };
+    let local = placed(&placing, p.to_array());
+    let rows = &flat.params[node.params as usize..][MODIFIER_ROWS..];
+    node.modifier().map(|kind| modifier_point(kind, local, 0, rows).into())
 }
 
 /// The rounding of 32-bit numbers in the weight of an operand: the largest deviation from one half where both
@@ -153,7 +177,7 @@ fn operand<O: Operand>(flat: &FlatScene, component: &Component, index: usize, p:
     let local = placed(&placing, p);
     match node.modifier() {
         Some(kind) => modified(kind, params, local, &|q| fold(flat, component, content.clone(), q)),
-        None => O::leaf(flat, index, leaf_distance(node, params, local)),
+        None => O::leaf(flat, index, leaf_distance(flat, node, params, local)),
     }
 }
 
@@ -200,12 +224,27 @@ fn placed<T: Real, N: Copy + Into<f64>>(rows: &[[N; 4]], p: [T; 3]) -> [T; 3] {
     })
 }
 
-fn leaf_distance<T: Real>(node: &FlatNode, params: &[ParamRow], local: [T; 3]) -> T {
+fn leaf_distance<T: Real>(flat: &FlatScene, node: &FlatNode, params: &[ParamRow], local: [T; 3]) -> T {
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
     let mut parameters = [0.0; 8];
     for row in 0..kind.parameter_rows() {
         parameters[4 * row..4 * row + 4].copy_from_slice(&params[LEAF_ROWS + row].map(f64::from));
     }
-    let data = leaf_payload(kind, params);
-    shape_distance(kind, local, &parameters, &|row| data[row].map(f64::from)) * f64::from(params[0][1])
+    let data = LeafData { rows: leaf_payload(kind, params), flat };
+    shape_distance(kind, local, &parameters, &data) * f64::from(params[0][1])
+}
+
+/// The payload of a leaf in the arrays.
+struct LeafData<'a> {
+    rows: &'a [ParamRow],
+    flat: &'a FlatScene,
+}
+
+impl Payload for LeafData<'_> {
+    fn row(&self, index: usize) -> [f64; 4] {
+        self.rows[index].map(f64::from)
+    }
+    fn texel(&self, index: usize) -> [u32; 4] {
+        self.flat.bricks.texel(index)
+    }
 }

@@ -35,7 +35,7 @@ fn heightfield<T: Real>(p: [T; 3], q: &[f64; 8], height: T) -> T {
 pub fn terrain_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
     let mut sum = T::constant(0.0);
     for row in 0..q[5] as usize {
-        let [frequency, height, salt, _] = rows(1 + row);
+        let [frequency, height, salt, _] = rows.row(1 + row);
         sum = sum + noise(x * frequency, z * frequency, q[6] as u32, salt as u32) * height;
     }
     sum
@@ -71,7 +71,7 @@ fn lattice(i: u32, j: u32, seed: u32, salt: u32) -> f64 {
 pub fn ocean_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
     let mut sum = T::constant(0.0);
     for row in 0..q[5] as usize {
-        let [along_x, along_z, height, phase] = rows(1 + row);
+        let [along_x, along_z, height, phase] = rows.row(1 + row);
         let turns = x * along_x + z * along_z + phase;
         sum = sum + (cosine(turns) + cosine(turns * 2.0_f64) * (0.5 * q[6])) * height;
     }
@@ -91,7 +91,7 @@ pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T 
     let cells = |v: T, half: f64, count: f64| {
         v.max(T::constant(-half)).min(T::constant(half)) * (0.5 * count / half.max(1e-9)) + 0.5 * count
     };
-    sdf_heights([cells(x, q[0], columns), cells(z, q[2], lines)], [columns, lines], &|row| rows(1 + row))
+    sdf_heights([cells(x, q[0], columns), cells(z, q[2], lines)], [columns, lines], &|row: usize| rows.row(1 + row))
 }
 
 /// The height of a grid at a position, in cells from its first corner: a quadratic B-spline.
@@ -110,7 +110,7 @@ pub fn sdf_heights<T: Real>(place: [T; 2], [columns, lines]: [f64; 2], rows: Dat
     let mut sum = T::constant(0.0);
     for (side, weight) in [-1.0, 0.0, 1.0].into_iter().zip(wz) {
         let near = (line + side).clamp(0.0, lines - 1.0);
-        let [a, b, c, _] = rows((near * columns + column) as usize);
+        let [a, b, c, _] = rows.row((near * columns + column) as usize);
         sum = sum + (wx[0] * a + wx[1] * b + wx[2] * c) * weight;
     }
     sum

@@ -4,11 +4,12 @@
 //! | file | content | GPU counterpart |
 //! |---|---|---|
 //! | `real` | number types: f64, and dual numbers that carry their gradient | – |
-//! | `sdf` and its folder, `ellipsoid`, `tube`, `profile`, `heightfield` | the shapes | `shaders/sdf/<shape>.wgsl` |
+//! | `sdf` and its folder, `ellipsoid`, `tube`, `profile`, `heightfield`, `brick_field` | the shapes | `shaders/sdf/<shape>.wgsl` |
 //! | `op` | the operators | `shaders/sdf/op.wgsl` |
 //! | `modifier` | the modifiers | `shaders/mod/<modifier>.wgsl` |
 //! | `component` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |
 
+mod brick_field;
 mod component;
 mod ellipsoid;
 mod heightfield;
@@ -22,7 +23,11 @@ mod tube;
 pub use crate::mixture::{
     MIXED, Mixture, SurfaceMaterial, mixture_add, mixture_decoded, mixture_joined, mixture_material, mixture_of,
 };
-pub use component::{SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
+pub use brick_field::sdf_mesh_field;
+pub use component::{
+    SurfacePoint, TIE, content_point, entry_field, entry_gradient, field, gradient, modified_field, partial_field,
+    surface,
+};
 pub use ellipsoid::sdf_ellipsoid;
 pub use heightfield::{
     heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,

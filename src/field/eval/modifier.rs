@@ -281,6 +281,6 @@ fn displacement_place<T: Real>([x, y, z]: Point<T>, [width, length, ..]: [f64; 4
 pub fn mod_displacement_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow], data: &[ParamRow]) -> T {
     let (a, [scale, least, greatest, axis]) = (row(rows, 0), row(rows, 1));
     let [x, y] = displacement_place(p, a, axis);
-    let height = sdf_heights([x * a[2], y * a[3]], [a[2], a[3]], &|i| data[i].map(f64::from));
+    let height = sdf_heights([x * a[2], y * a[3]], [a[2], a[3]], &|i: usize| data[i].map(f64::from));
     ((f - height) * scale).max(f - greatest).min(f - least)
 }

@@ -27,11 +27,11 @@ pub fn sdf_profile<T: Real>(p: [T; 2], groups: usize, any: bool, rows: Data<'_>)
     let first = 1 + 2 * groups;
     let (mut least, mut nearest, mut turns) = (f64::INFINITY, first, 0);
     for group in 0..groups {
-        let [_, _, from, count] = rows(2 + 2 * group);
+        let [_, _, from, count] = rows.row(2 + 2 * group);
         for piece in 0..count as usize {
             let row = first + 2 * (from as usize + piece);
-            let [_, reach, low, high] = rows(row + 1);
-            let place = Place::new(at, rows(row), rows(row + 1));
+            let [_, reach, low, high] = rows.row(row + 1);
+            let place = Place::new(at, rows.row(row), rows.row(row + 1));
             let d = place.distance();
             if d < least {
                 (least, nearest) = (d, row);
@@ -41,7 +41,7 @@ pub fn sdf_profile<T: Real>(p: [T; 2], groups: usize, any: bool, rows: Data<'_>)
             }
         }
     }
-    let place = Place::new(p, rows(nearest), rows(nearest + 1));
+    let place = Place::new(p, rows.row(nearest), rows.row(nearest + 1));
     let d = if place.is_between() { place.aside().abs() } else { length2(place.way_from_end()) };
     let inside = if any { turns != 0 } else { turns % 2 != 0 };
     if inside { -d } else { d }

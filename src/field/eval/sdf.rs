@@ -13,12 +13,13 @@ mod sheet;
 pub use ball::{sdf_cut_sphere, sdf_death_star, sdf_hollow_cut_sphere, sdf_solid_angle, sdf_vesica};
 pub use cone::{sdf_cone, sdf_infinite_cylinder, sdf_pyramid};
 pub use fractal::{sdf_julia, sdf_kleinian, sdf_mandelbulb, sdf_menger_sponge};
-pub use planar::Data;
+pub use planar::{Data, Payload};
 pub use prism::{sdf_prism, sdf_rhombus, sdf_star, sdf_triangular_prism};
 pub use ring::{sdf_capped_torus, sdf_link, sdf_polygon_ring};
 pub use sheet::{sdf_quad, sdf_triangle};
 
 use super::Real;
+use super::brick_field::sdf_mesh_field;
 use super::ellipsoid::sdf_ellipsoid;
 use super::heightfield::{sdf_heightmap, sdf_ocean, sdf_terrain};
 use super::profile::{sdf_extrusion, sdf_revolution, sdf_text};

@@ -14,7 +14,7 @@ pub fn sdf_tube<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     let (pieces, first) = (q[0] as usize, 1 + q[1] as usize);
     let (mut least, mut nearest) = (f64::INFINITY, (DVec3::ZERO, 0.0));
     for piece in 0..pieces {
-        let row = |i: usize| rows(first + 3 * piece + i);
+        let row = |i: usize| rows.row(first + 3 * piece + i);
         for (center, radius) in balls(at, row(0), row(1), row(2)) {
             let f = at.distance(center) - radius;
             if f < least {

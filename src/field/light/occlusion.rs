@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::shadow::cone_share;
-use crate::copies::{CopyRay, copy_ray, visit_copies};
+use crate::copies::{copy_ray, visit_copies};
 use crate::eval::field;
 use crate::reference::trace::TraceError;
 use crate::scene_eval::{RayLimits, SceneCounts, SceneEvaluator};
@@ -75,7 +75,7 @@ pub fn scene_occlusion(
     let (mut bent, mut visibility) = (DVec3::ZERO, 0.0);
     for index in 0..OCCLUSION_CONES {
         let (direction, weight) = occlusion_cone(normal, index);
-        let free = weight * cone_share(least_ratio(evaluator, &Ray { origin, direction }, limits));
+        let free = weight * cone_share(least_ratio(evaluator, &Ray { origin, direction }, limits, normal));
         visibility += free;
         bent += direction * free;
     }
@@ -83,7 +83,7 @@ pub fn scene_occlusion(
 }
 
 /// The least ratio of the field of any component, along the axis of a cone, and the radius of a sphere in it.
-fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits) -> f64 {
+fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits, normal: DVec3) -> f64 {
     let flat = evaluator.flat();
     let mut ratio = 1.0_f64;
     for visit in evaluator.visits(axis, limits, OCCLUSION_TANGENT) {
@@ -91,25 +91,34 @@ fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits
         if component.instanced.is_some() {
             let counts = &mut evaluator.counts;
             visit_copies(flat, component, axis, limits, OCCLUSION_TANGENT, &mut |copy, _| {
-                let CopyRay { ray, stretch } = copy_ray(flat, component, copy, axis);
-                let near = limits.near * stretch;
-                let range = RayLimits { near, far: limits.far * stretch };
-                ratio = ratio.min(ratio_of(flat, component, &ray, range, counts));
+                let inner = copy_ray(flat, component, copy, axis);
+                let stretch = inner.stretch;
+                let range = RayLimits { near: limits.near * stretch, far: limits.far * stretch };
+                // What is parallel to the receiver, as the receiver itself, is as far away as elsewhere.
+                let sine = OCCLUSION_SINE * inner.across(normal) / stretch;
+                ratio = ratio.min(ratio_of(flat, component, &inner.ray, range, sine, counts));
                 ControlFlow::Continue(limits.far)
             });
             continue;
         }
-        ratio = ratio.min(ratio_of(flat, component, axis, limits, &mut evaluator.counts));
+        ratio = ratio.min(ratio_of(flat, component, axis, limits, OCCLUSION_SINE, &mut evaluator.counts));
     }
     ratio
 }
 
-/// The same for one component, or one copy, in whose space the axis is.
-fn ratio_of(flat: &FlatScene, component: &Component, axis: &Ray, limits: RayLimits, counts: &mut SceneCounts) -> f64 {
+/// The same for one component, or one copy, in whose space the axis is. `sine`: radius of a sphere per distance.
+fn ratio_of(
+    flat: &FlatScene,
+    component: &Component,
+    axis: &Ray,
+    limits: RayLimits,
+    sine: f64,
+    counts: &mut SceneCounts,
+) -> f64 {
     let mut ratio = 1.0_f64;
     let mut t = limits.near;
     while t <= limits.far && ratio > -1.0 {
-        let (p, size) = (axis.at(t) - component.origin, OCCLUSION_SINE * t);
+        let (p, size) = (axis.at(t) - component.origin, sine * t);
         let plane = component.half_space.map_or(0.0, |[x, y, z, d]| DVec3::new(x, y, z).dot(p) + d);
         let mut f = component.bounds.distance(p).max(plane);
         // Otherwise the bounds are outside of the sphere, and so is the component.

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use crate::copies::{CopyRay, copy_ray, visit_copies};
+use crate::copies::{copy_ray, visit_copies};
 use crate::eval::field;
 use crate::lights::GpuLight;
 use crate::reference::trace::TraceError;
@@ -29,6 +29,9 @@ const LEAST_RADIUS: f64 = 1e-12;
 pub const WIDE_SPREAD: f64 = 0.105;
 /// Length of the cone to a directional light, in meters.
 pub const SHADOW_REACH: f64 = 1e6;
+/// Copies that leave less of a light count as leaving nothing, so that cones through endless lattices end: half of what
+/// a byte resolves.
+const LEAST_SHARE: f64 = 0.002;
 /// Least step in the cone's radius, by quality.
 pub const CONE_STEPS: [f64; 3] = [0.5, 0.25, 0.125];
 
@@ -159,12 +162,22 @@ pub fn shadow_of(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone, visit: &
     let mut all = ShadowShare { share: 1.0, proof: ShadowProof::Lit };
     let limits = RayLimits { near: visit.entry, far: visit.exit };
     visit_copies(flat, component, &cone.axis, limits, cone.spread, &mut |copy, range| {
-        // In the space of the copy, whose lengths differ by `stretch`; angles stay.
-        let CopyRay { ray, stretch } = copy_ray(flat, component, copy, &cone.axis);
-        let of_copy = ShadowCone { axis: ray, near: cone.near * stretch, far: cone.far * stretch, ..*cone };
+        // In the space of the copy, whose lengths differ by `stretch`; angles stay if it is scaled evenly.
+        let inner = copy_ray(flat, component, copy, &cone.axis);
+        let stretch = inner.stretch;
+        let of_copy = ShadowCone {
+            axis: inner.ray,
+            near: cone.near * stretch,
+            far: cone.far * stretch,
+            spread: inner.widened(cone.spread),
+            size: cone.size * inner.mean_size(),
+            least_step: cone.least_step * stretch,
+            ..*cone
+        };
         let one = shadow_along(flat, component, &of_copy, [range.near * stretch, range.far * stretch], counts);
         all = all.and(one, cone.spread);
-        if one.proof == ShadowProof::Dark { ControlFlow::Break(()) } else { ControlFlow::Continue(visit.exit) }
+        let is_dark = one.proof == ShadowProof::Dark || all.share < LEAST_SHARE;
+        if is_dark { ControlFlow::Break(()) } else { ControlFlow::Continue(visit.exit) }
     });
     all
 }

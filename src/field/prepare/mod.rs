@@ -5,16 +5,23 @@
 //! | `tube` | arcs of a curve with radii |
 //! | `profile` | arcs of a profile, cut so that each only rises |
 //! | `heightfield` | layers of noise, waves, heights of an image |
+//! | `mesh_field` | where the bricks of a model lie |
 //! | `prepared_params` | the parameters of each of them |
 
 mod heightfield;
+mod mesh_field;
 mod prepared_params;
 mod profile;
 mod tube;
 
 pub(super) use heightfield::spline;
+pub(super) use mesh_field::first_texels;
 use prepared_params::{PreparedParams, bounding_sphere};
 
+use std::sync::Arc;
+
+use super::eval::Payload;
+use isolith_bricks::BrickLevels;
 use isolith_geometry::Aabb;
 use isolith_scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_profile};
 
@@ -29,6 +36,29 @@ pub struct PreparedShape {
     pub payload: Vec<[f64; 4]>,
     /// A box around the surface, in local space.
     pub bounds: Aabb,
+    /// The bricks of a model.
+    pub bricks: Option<Arc<BrickLevels>>,
+}
+
+/// The texel at an index over all levels.
+fn level_texel(levels: &BrickLevels, index: usize) -> [u32; 4] {
+    let mut at = index;
+    for bricks in levels.all() {
+        if let Some(texel) = bricks.texels.get(at) {
+            return *texel;
+        }
+        at -= bricks.texels.len();
+    }
+    [0; 4]
+}
+
+impl Payload for PreparedShape {
+    fn row(&self, index: usize) -> [f64; 4] {
+        self.payload[index]
+    }
+    fn texel(&self, index: usize) -> [u32; 4] {
+        self.bricks.as_ref().map_or([0; 4], |levels| level_texel(levels, index))
+    }
 }
 
 impl PreparedShape {
@@ -52,6 +82,7 @@ impl PreparedShape {
                 let run = [*direction, *spread, *phase].map(f64::to_radians);
                 heightfield::ocean(*size, *amplitude, *wavelength, *waves, run, *sharpness)
             }
+            Shape::MeshField { file, .. } => mesh_field::mesh_field(&file.bricks()),
             _ => PreparedParams { parameters: shape.packed(), payload: Vec::new() },
         };
         let mut payload = payload;
@@ -59,6 +90,10 @@ impl PreparedShape {
             let bounding_sphere = bounding_sphere(bounds.center(), bounds.half().length());
             payload.insert(0, bounding_sphere);
         }
-        Self { kind, parameters, payload, bounds }
+        let bricks = match shape {
+            Shape::MeshField { file, .. } => Some(file.bricks()),
+            _ => None,
+        };
+        Self { kind, parameters, payload, bounds, bricks }
     }
 }

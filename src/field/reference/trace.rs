@@ -110,7 +110,7 @@ fn follow(flat: &FlatScene, index: u32, ray: &Ray, [near, far]: [f64; 2]) -> Fol
     }
     let mut found = Followed { hit: Ok(None), evaluations: 0, margin: f64::INFINITY };
     visit_copies(flat, component, ray, RayLimits { near, far }, CLEAR, &mut |copy, limits| {
-        let CopyRay { ray, stretch } = copy_ray(flat, component, copy, ray);
+        let CopyRay { ray, stretch, .. } = copy_ray(flat, component, copy, ray);
         let mut line = Line::new(flat, index, &ray);
         let hit = line.first_hit(limits.near * stretch, limits.far * stretch);
         found.evaluations += line.fields.get();
@@ -133,7 +133,7 @@ fn line_at<'a>(flat: &'a FlatScene, index: u32, ray: &Ray, t: f64) -> (Line<'a>,
     let component = &flat.components[index as usize];
     match nearest_copy(flat, component, ray.at(t)).copy {
         Some(copy) => {
-            let CopyRay { ray, stretch } = copy_ray(flat, component, &copy, ray);
+            let CopyRay { ray, stretch, .. } = copy_ray(flat, component, &copy, ray);
             (Line::new(flat, index, &ray), t * stretch)
         }
         None => (Line::new(flat, index, ray), t),

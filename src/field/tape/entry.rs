@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::eval::{BlendParams, entry_field, shape_distance};
+use crate::eval::{BlendParams, Payload, entry_field, shape_distance};
+use crate::flat_bricks::FlatBricks;
 use crate::{Component, FlatNode, FlatScene, LEAF_ROWS, ParamRow, leaf_payload};
 use isolith_geometry::{Aabb, singular_values};
 use isolith_scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
@@ -15,11 +16,21 @@ pub(super) struct Leaf {
     scale: f64,
     parameters: [f64; SHAPE_FLOATS],
     data: Vec<[f64; 4]>,
+    bricks: FlatBricks,
+}
+
+impl Payload for Leaf {
+    fn row(&self, index: usize) -> [f64; 4] {
+        self.data[index]
+    }
+    fn texel(&self, index: usize) -> [u32; 4] {
+        self.bricks.texel(index)
+    }
 }
 
 impl Leaf {
-    /// The leaf of shape code `shape` whose rows `params` begins with.
-    pub fn read(shape: u32, params: &[ParamRow]) -> Self {
+    /// The leaf of shape code `shape` whose rows `params` begins with; `bricks` are those of the scene.
+    pub fn read(shape: u32, params: &[ParamRow], bricks: &FlatBricks) -> Self {
         let kind = ShapeKind::ALL[shape as usize];
         let rows = [1, 2, 3].map(|i| {
             let [x, y, z, shift] = params[i].map(f64::from);
@@ -30,13 +41,14 @@ impl Leaf {
             parameters[4 * row..4 * row + 4].copy_from_slice(&params[LEAF_ROWS + row].map(f64::from));
         }
         let data = leaf_payload(kind, params).iter().map(|row| row.map(f64::from)).collect();
-        Self { kind, rows, scale: params[0][1].into(), parameters, data }
+        let bricks = if kind == ShapeKind::MeshField { bricks.clone() } else { FlatBricks::default() };
+        Self { kind, rows, scale: params[0][1].into(), parameters, data, bricks }
     }
 
     /// Its field at `p`, in meters.
     pub fn distance(&self, p: DVec3) -> f64 {
         let local = self.rows.map(|(row, shift)| row.dot(p) + shift);
-        shape_distance(self.kind, local, &self.parameters, &|row| self.data[row]) * self.scale
+        shape_distance(self.kind, local, &self.parameters, self) * self.scale
     }
 
     /// The magnitude of its coordinates in meters, which rounding in f32 is relative to.
@@ -126,8 +138,8 @@ impl<'a> Entries<'a> {
     /// The entries of `component`.
     pub fn new(flat: &'a FlatScene, component: &'a Component) -> Self {
         let (first, count) = (component.first as usize, component.count as usize);
-        let (parameters, data) = ([0.0; SHAPE_FLOATS], Vec::new());
-        let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters, data };
+        let (parameters, data, bricks) = ([0.0; SHAPE_FLOATS], Vec::new(), FlatBricks::default());
+        let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters, data, bricks };
         let mut entries = Self {
             flat,
             component,
@@ -144,7 +156,7 @@ impl<'a> Entries<'a> {
             let params = &flat.params[node.params as usize..];
             entries.blend_params[index] = BlendParams::read(&params[0]);
             if node.is_leaf() {
-                let leaf = Leaf::read(node.code & 0xffff, params);
+                let leaf = Leaf::read(node.code & 0xffff, params, &flat.bricks);
                 size = size.max(leaf.size());
                 entries.spheres[index] = leaf.bounding_sphere();
                 entries.leaves[index] = leaf;

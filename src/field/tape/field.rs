@@ -46,7 +46,7 @@ pub(super) fn fold(
             TapeOp::Leaf => {
                 let distance = match tape_entry.content() {
                     Some((kind, number)) => modified_field(kind, params, p, &|q| content(number, q)),
-                    None => Leaf::read(tape_entry.shape(), params).distance(p),
+                    None => Leaf::read(tape_entry.shape(), params, &flat.bricks).distance(p),
                 };
                 value = if tape_entry.join() == Join::First as u32 { distance } else { join(value, distance) };
             }

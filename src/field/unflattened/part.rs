@@ -43,8 +43,8 @@ impl Part {
             Self::Nothing => f64::INFINITY,
             Self::Leaf(leaf) => {
                 let local = leaf.local_from_outer.transform_point3(p).to_array();
-                let PreparedShape { kind, parameters, payload: rows, .. } = &leaf.prepared;
-                shape_distance(*kind, local, parameters, &|row| rows[row]) * leaf.scale
+                let shape = &leaf.prepared;
+                shape_distance(shape.kind, local, &shape.parameters, shape) * leaf.scale
             }
             Self::Fold { first, rest } => rest.iter().fold(first.value(p), |so_far, (link, part)| {
                 op_join(link.join, so_far, part.value(p), &link.blend_params, link.kernel).value

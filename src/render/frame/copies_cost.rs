@@ -25,17 +25,22 @@ pub const COPIES_OF_A_RAY: f64 = 2.0;
 impl CopyLimits {
     /// The limits for an instancer, for an invocation of `iterations`: half of them are for cells.
     pub fn of(instancer: &FlatInstancer, iterations: u32) -> Self {
-        let of_dynamic = |kind: DynamicKind| match kind {
-            DynamicKind::CurlNoise => 9,
-            DynamicKind::RandomWalk => 5,
-            // Layers, each along three axes.
-            DynamicKind::FractionalBrownianMotion => 40,
-            _ => 1,
-        };
-        let dynamics: u32 = instancer.dynamics.iter().map(|dynamic| of_dynamic(dynamic.kind)).sum();
-        let of_cell = 3 + (instancer.masks.len() + instancer.shares.len()) as u32 + dynamics;
+        let of_cell = cell_loops(instancer);
         Self { iterations: iterations / 2, cells: iterations / 2 / of_cell }
     }
+}
+
+/// Upper bound of the loop iterations for a cell of an instancer, or for a node of its tree.
+pub fn cell_loops(instancer: &FlatInstancer) -> u32 {
+    let of_dynamic = |kind: DynamicKind| match kind {
+        DynamicKind::CurlNoise => 9,
+        DynamicKind::RandomWalk => 5,
+        // Layers, each along three axes.
+        DynamicKind::FractionalBrownianMotion => 40,
+        _ => 1,
+    };
+    let dynamics: u32 = instancer.dynamics.iter().map(|dynamic| of_dynamic(dynamic.kind)).sum();
+    3 + (instancer.masks.len() + instancer.shares.len()) as u32 + dynamics
 }
 
 /// Expected cost of the walk of a ray, in leaves.

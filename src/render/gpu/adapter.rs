@@ -54,6 +54,11 @@ impl AdapterChoice {
         Self { wanted: name.map(str::to_owned).or_else(of_environment).filter(|name| !name.trim().is_empty()) }
     }
 
+    /// The text that the adapter's name must contain, if any.
+    pub fn wanted(&self) -> Option<&str> {
+        self.wanted.as_deref()
+    }
+
     /// Picks among those of `adapters` that satisfy `fits`.
     pub fn pick(
         &self,

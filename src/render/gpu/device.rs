@@ -116,8 +116,11 @@ fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default limit is four.
-const STORAGE_TEXTURES: u32 = 6;
+/// Storage textures of a pass: up to four targets, rows, tapes and bricks. WebGPU's default limit is four.
+const STORAGE_TEXTURES: u32 = 7;
+
+/// Storage buffers of a pass: shadows in a scene with meshes and copies. WebGPU's default limit is eight.
+const STORAGE_BUFFERS: u32 = 10;
 
 /// Bytes of a pixel in all targets that the mesh pass draws into. WebGPU's default limit is 32.
 const COLOR_ATTACHMENT_BYTES: u32 = 48;
@@ -130,6 +133,7 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         max_texture_dimension_2d: offered.max_texture_dimension_2d,
         max_buffer_size: offered.max_buffer_size,
         max_storage_textures_per_shader_stage: STORAGE_TEXTURES,
+        max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
         max_color_attachment_bytes_per_sample: COLOR_ATTACHMENT_BYTES,
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
         ..wgpu::Limits::default()

@@ -7,6 +7,7 @@ use crate::gpu::Gpu;
 use crate::gpu::readback::read_words;
 use crate::renderer::RenderError;
 use crate::renderer::scene::PIPELINE_WINDOW;
+use crate::resources::brick_texture::BrickTexture;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::layouts::{
     Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform,
@@ -133,12 +134,15 @@ impl Probe<'_> {
         let params = texture("params", PARAMS_FORMAT, bytemuck::cast_slice(&flat.params));
         let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
         let tapes = texture("tapes", TAPES_FORMAT, words);
+        let mut bricks = BrickTexture::new(device);
+        bricks.hold(device, queue, &flat.bricks);
         let bindings = SceneBindings {
             nodes: scene[0].binding(),
             params: params.binding(),
             subject: window(scene[1].buffer(), size_of::<GpuComponent>()),
             rows: window(scene[2].buffer(), PIPELINE_WINDOW),
             tapes: tapes.binding(),
+            bricks: bricks.binding(),
         };
         let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
         let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; count * 4]));

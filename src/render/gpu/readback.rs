@@ -38,6 +38,21 @@ pub fn read_color(gpu: &Gpu, target: &Target) -> Result<Vec<[u8; 4]>, GpuError> 
     Ok(bytemuck::pod_collect_to_vec(&read_texture(gpu, target, 4)?))
 }
 
+/// The linear base colors of meshes, where one is seen.
+pub fn read_mesh_colors(gpu: &Gpu, targets: &Targets) -> Result<Vec<[f32; 3]>, GpuError> {
+    let halves: Vec<[u16; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.base_color, 8)?);
+    Ok(halves.iter().map(|[r, g, b, _]| [*r, *g, *b].map(single)).collect())
+}
+
+/// An f16, which is not negative and finite, as f32.
+fn single(half: u16) -> f32 {
+    let (exponent, mantissa) = (i32::from(half >> 10 & 0x1f), f32::from(half & 0x3ff) / 1024.0);
+    match exponent {
+        0 => mantissa * 2.0_f32.powi(-14),
+        _ => (1.0 + mantissa) * 2.0_f32.powi(exponent - 15),
+    }
+}
+
 /// The texels of a target, row by row without padding.
 fn read_texture(gpu: &Gpu, target: &Target, bytes_per_texel: u32) -> Result<Vec<u8>, GpuError> {
     let size = target.texture.size();
@@ -107,6 +122,13 @@ fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halves_are_read_exactly() {
+        for (half, value) in [(0, 0.0), (0x3c00, 1.0), (0x3800, 0.5), (0x3555, 0.33325195), (1, 2.0_f32.powi(-24))] {
+            assert_eq!(single(half), value, "{half:x}");
+        }
+    }
 
     /// A thread's wait may end before another thread, which saw the work finish, has run the callback.
     #[test]

@@ -8,8 +8,9 @@ use crate::gpu::readback::read_words;
 use crate::renderer::RenderError;
 use crate::renderer::evaluation::EvaluationCost;
 use crate::renderer::scene::PIPELINE_WINDOW;
+use crate::resources::brick_texture::BrickTexture;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits, query_components};
+use crate::resources::hierarchy::{HierarchyBuffers, Obstacles, SceneLimits, query_components};
 use crate::resources::layouts::{
     Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform,
     window, write_storage,
@@ -98,7 +99,7 @@ impl SceneProbe {
         let entries: Vec<_> =
             types.into_iter().enumerate().map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, ty)).collect();
         let own = layout(device, "scene probe", &entries);
-        let hierarchy = HierarchyBuffers::layout(device, false);
+        let hierarchy = HierarchyBuffers::layout(device, Obstacles::default());
         let text = assemble("probe_scene.wgsl", &evaluator, Options::default())?;
         let pipeline = |entry_point| {
             let groups = [&layouts.view, &layouts.scene, &own, &hierarchy];
@@ -152,17 +153,20 @@ impl SceneProbe {
         let tapes = texture("tapes", TAPES_FORMAT, bytemuck::cast_slice(&tapes));
         // Components read nothing at their dynamic offsets here.
         let none = uploaded(&[]);
+        let mut bricks = BrickTexture::new(device);
+        bricks.hold(device, queue, &flat.bricks);
         let bindings = SceneBindings {
             nodes: nodes.binding(),
             params: params.binding(),
             subject: window(none.buffer(), size_of::<GpuComponent>()),
             rows: window(none.buffer(), PIPELINE_WINDOW),
             tapes: tapes.binding(),
+            bricks: bricks.binding(),
         };
         let groups = [
             bind(device, "view", &self.layouts.view, &[view.binding()]),
             bindings.bind(device, &self.layouts.scene),
-            buffers.bind(device, &self.hierarchy, None),
+            buffers.bind(device, &self.hierarchy, None, None),
         ];
         LoadedScene { probe: self, gpu, origin, groups }
     }

@@ -9,12 +9,12 @@ use crate::frame::plan::TILE;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
-use crate::resources::hierarchy::HierarchyBuffers;
+use crate::resources::hierarchy::{HierarchyBuffers, Obstacles};
 use crate::resources::layouts::*;
 use crate::resources::mesh_rays::MeshRayBuffer;
 use crate::resources::uniforms::{DispatchParams, UNIFORM_STRIDE};
 use isolith_field::FlatScene;
-use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble_with};
+use isolith_wgsl::{Evaluator, OpSet, Options, SCENE_COPIES, ShaderError, assemble_with};
 
 bindings! {
     /// Group 2.
@@ -38,10 +38,15 @@ const MOST_PIPELINES: usize = 4;
 struct ScenePipeline {
     ops: OpSet,
     by_tapes: bool,
-    /// Whether meshes cast shadows.
-    meshes: bool,
+    /// What casts shadows besides components.
+    obstacles: Obstacles,
     /// Shadows, and occlusion; each is built when a scene first uses it.
     pipelines: [Option<ComputePipeline>; 2],
+}
+
+/// The layout of the hierarchy for what is met besides components.
+fn layout_of(Obstacles { meshes, copies }: Obstacles) -> usize {
+    usize::from(meshes) + 2 * usize::from(copies)
 }
 
 /// Entry points: shadows, and occlusion.
@@ -52,16 +57,15 @@ const ENTRY_POINTS: [&str; 2] = ["shadow", "shadow_occlusion"];
 pub struct ShadowPass {
     layouts: Layouts,
     own: BindGroupLayout,
-    hierarchy: BindGroupLayout,
-    /// The same with the meshes.
-    with_meshes: BindGroupLayout,
+    /// By what is met besides components, see `layout_of`.
+    hierarchies: [BindGroupLayout; 4],
     /// The one in use comes first.
     pipelines: Vec<ScenePipeline>,
 }
 
 impl ShadowPass {
     /// Chooses the pipelines for a scene, and builds what is missing. `by_tapes`: whether all components have
-    /// tapes; `meshes`: whether meshes cast shadows; `used`: whether there are shadows, and occlusion.
+    /// tapes; `obstacles`: what casts shadows besides them; `used`: whether there are shadows, and occlusion.
     ///
     /// # Errors
     /// A shader file is missing.
@@ -69,27 +73,35 @@ impl ShadowPass {
         &mut self,
         device: &wgpu::Device,
         flat: &FlatScene,
-        [by_tapes, meshes]: [bool; 2],
+        (by_tapes, obstacles): (bool, Obstacles),
         used: [bool; 2],
         options: Options,
     ) -> Result<(), ShaderError> {
         let wanted = OpSet::of(flat);
         let fits = |one: &ScenePipeline| {
-            one.by_tapes == by_tapes && one.meshes == meshes && one.ops.covers(&wanted) && one.ops.is_near(&wanted)
+            one.by_tapes == by_tapes
+                && one.obstacles == obstacles
+                && one.ops.covers(&wanted)
+                && one.ops.is_near(&wanted)
         };
         match self.pipelines.iter().position(fits) {
             Some(at) => self.pipelines[..=at].rotate_right(1),
-            None => self.pipelines.insert(0, ScenePipeline { ops: wanted, by_tapes, meshes, pipelines: [None, None] }),
+            None => {
+                self.pipelines.insert(0, ScenePipeline { ops: wanted, by_tapes, obstacles, pipelines: [None, None] })
+            }
         }
         self.pipelines.truncate(MOST_PIPELINES);
-        let Self { layouts, own, hierarchy, with_meshes, pipelines } = self;
-        let queried = if meshes { &*with_meshes } else { &*hierarchy };
-        let features: &[&str] = if meshes { &["MESH_RAYS"] } else { &[] };
+        let Self { layouts, own, hierarchies, pipelines } = self;
+        let queried = &hierarchies[layout_of(obstacles)];
+        let features: Vec<&str> = [(obstacles.meshes, "MESH_RAYS"), (obstacles.copies, SCENE_COPIES)]
+            .into_iter()
+            .filter_map(|(met, feature)| met.then_some(feature))
+            .collect();
         let ScenePipeline { ops, pipelines, .. } = &mut pipelines[0];
         let evaluator = if by_tapes { Evaluator::Tape(ops.clone()) } else { Evaluator::Interpreter(ops.clone()) };
         for ((pipeline, entry_point), _) in pipelines.iter_mut().zip(ENTRY_POINTS).zip(used).filter(|(_, used)| *used) {
             if pipeline.is_none() {
-                let text = assemble_with(Pass::Shadow.file(), &evaluator, options, features)?;
+                let text = assemble_with(Pass::Shadow.file(), &evaluator, options, &features)?;
                 let groups = [&layouts.view, &layouts.scene, &*own, queried];
                 *pipeline = Some(compute_pipeline(device, Pass::Shadow.label(), text, entry_point, &groups));
             }
@@ -103,8 +115,10 @@ impl FramePass for ShadowPass {
         Ok(Self {
             layouts: layouts.clone(),
             own: ShadowBindings::layout(device),
-            hierarchy: HierarchyBuffers::layout(device, false),
-            with_meshes: HierarchyBuffers::layout(device, true),
+            hierarchies: [0, 1, 2, 3].map(|at| {
+                let obstacles = Obstacles { meshes: at & 1 != 0, copies: at & 2 != 0 };
+                HierarchyBuffers::layout(device, obstacles)
+            }),
             pipelines: Vec::new(),
         })
     }
@@ -124,9 +138,11 @@ impl FramePass for ShadowPass {
             settings: shadows.settings.binding(),
             dispatch: window(bound.resources.dispatch_params(), size_of::<DispatchParams>()),
         };
-        let meshes = shadows.meshes.as_ref().filter(|_| shadows.has_meshes).map(MeshRayBuffer::binding);
-        let layout = if meshes.is_some() { &self.with_meshes } else { &self.hierarchy };
-        vec![own.bind(device, &self.own), shadows.hierarchy.bind(device, layout, meshes)]
+        let Obstacles { meshes, copies } = shadows.obstacles;
+        let of_meshes = shadows.meshes.as_ref().filter(|_| meshes).map(MeshRayBuffer::binding);
+        let of_copies = copies.then(|| [shadows.instancers.binding(), bound.places.clone()]);
+        let layout = &self.hierarchies[layout_of(shadows.obstacles)];
+        vec![own.bind(device, &self.own), shadows.hierarchy.bind(device, layout, of_meshes, of_copies)]
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {

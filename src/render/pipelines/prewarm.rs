@@ -3,7 +3,9 @@
 use crate::gpu::{Gpu, GpuError};
 use crate::pipelines::field::{FieldBuffers, FieldLayouts, FieldPipelines};
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::resources::layouts::{CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
+use crate::resources::layouts::{
+    BRICKS_FORMAT, CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window,
+};
 use crate::resources::targets::Targets;
 use crate::resources::uniforms::{DispatchParams, GpuComponent, GpuView, INSTANCER_STRIDE};
 use isolith_field::copies::GpuInstancer;
@@ -48,14 +50,14 @@ impl Prewarmer {
             ray_counts: written[4].buffer(),
             nothing: written[5].buffer(),
         };
-        let [params, tapes_texture] =
-            [("params", PARAMS_FORMAT), ("tapes", TAPES_FORMAT)].map(|(l, f)| DataTexture::new(device, l, f));
+        let [params, tapes_texture, bricks] = empty_textures(device);
         let scene = SceneBindings {
             nodes: small.binding(),
             params: params.binding(),
             subject: window(small.buffer(), size_of::<GpuComponent>()),
             rows: window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
             tapes: tapes_texture.binding(),
+            bricks: bricks.binding(),
         };
         let instancer = zeros(INSTANCER_STRIDE);
         let copies = CopiesBindings {
@@ -64,6 +66,7 @@ impl Prewarmer {
             subject: window(small.buffer(), size_of::<GpuComponent>()),
             rows: window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
             tapes: tapes_texture.binding(),
+            bricks: bricks.binding(),
             instancer: window(instancer.buffer(), size_of::<GpuInstancer>()),
             places: small.binding(),
         };
@@ -123,6 +126,12 @@ impl Prewarmer {
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait()
     }
+}
+
+/// Textures of rows, tapes and bricks without contents.
+fn empty_textures(device: &wgpu::Device) -> [DataTexture; 3] {
+    [("params", PARAMS_FORMAT), ("tapes", TAPES_FORMAT), ("bricks", BRICKS_FORMAT)]
+        .map(|(label, format)| DataTexture::new(device, label, format))
 }
 
 #[cfg(test)]

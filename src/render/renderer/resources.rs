@@ -60,6 +60,8 @@ pub struct Bound<'a> {
     pub resources: &'a FrameResources,
     /// The materials of the scene.
     pub materials: wgpu::BindingResource<'a>,
+    /// The places of all instancers.
+    pub places: wgpu::BindingResource<'a>,
 }
 
 /// Bind groups for the targets of a slot.
@@ -274,7 +276,8 @@ impl FrameResources {
         if state.groups.is_some() {
             return;
         }
-        let bound = Bound { targets: &state.targets, resources: self, materials: scene.materials() };
+        let (materials, places) = (scene.materials(), scene.places());
+        let bound = Bound { targets: &state.targets, resources: self, materials, places };
         let [of_scene, templates] = scene.bind(device);
         let dispatch_params = window(self.dispatch_params.buffer(), size_of::<DispatchParams>());
         let groups = Groups {
@@ -358,7 +361,8 @@ mod tests {
     use crate::frame::plan::{SUBTILES, TILE};
     use crate::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
     use crate::resources::buffers::DataTexture;
-    use crate::resources::shadows::SHADOW_STATE;
+    use crate::resources::hierarchy::COPIES_LINK;
+    use crate::resources::shadows::{SHADOW_COPIES_WORDS, SHADOW_WORDS};
     use isolith_field::light::occlusion::OCCLUSION_CONES;
     use isolith_field::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
     use isolith_wgsl::assemble_plain;
@@ -389,7 +393,9 @@ mod tests {
             ("common/scene.wgsl", "RUN", FlatNode::RUN),
             ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
             ("common/scene.wgsl", "LINE", DataTexture::LINE as u32),
-            ("light/shadow_settings.wgsl", "SHADOW_STATE", SHADOW_STATE as u32),
+            ("light/shadow_settings.wgsl", "SHADOW_WORDS", SHADOW_WORDS as u32),
+            ("light/shadow_settings.wgsl", "SHADOW_COPIES_WORDS", SHADOW_COPIES_WORDS as u32),
+            ("scene/hierarchy.wgsl", "COPIES_LINK", COPIES_LINK),
             ("light/occlusion.wgsl", "OCCLUSION_CONES", OCCLUSION_CONES),
             ("common/counts.wgsl", "COMPONENT_COUNTS", COMPONENT_COUNTS as u32),
             ("common/counts.wgsl", "PIXEL_COUNTS", PIXEL_COUNTS as u32),

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use wgpu::{BindGroup, BindGroupLayout};
 
+use crate::frame::copies_cost::cell_loops;
 use crate::gpu::Gpu;
 use crate::pipelines::key::PipelineKey;
+use crate::resources::brick_texture::BrickTexture;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::layouts::{CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, window};
 use crate::resources::tape_texture::TapeTexture;
@@ -32,11 +34,14 @@ pub struct SceneResources {
     /// The same rows as a texture, for interpreter and tapes.
     params: DataTexture,
     tapes: TapeTexture,
+    bricks: BrickTexture,
     components: SyncedBuffer,
     materials: SyncedBuffer,
     copies_layout: BindGroupLayout,
     instancers: SyncedBuffer,
     places: SyncedBuffer,
+    /// The instancers as the device has them.
+    placed: Vec<GpuInstancer>,
 }
 
 impl SceneResources {
@@ -47,11 +52,13 @@ impl SceneResources {
             copies_layout: layouts.copies.clone(),
             instancers: SyncedBuffer::uniform(device, "instancers"),
             places: SyncedBuffer::storage(device, "places"),
+            placed: Vec::new(),
             nodes: SyncedBuffer::storage(device, "nodes"),
             rows: SyncedBuffer::uniform(device, "rows"),
             template_rows: SyncedBuffer::uniform(device, "rows of templates"),
             params: DataTexture::new(device, "params", PARAMS_FORMAT),
             tapes: TapeTexture::new(device),
+            bricks: BrickTexture::new(device),
             components: SyncedBuffer::uniform(device, "components"),
             materials: SyncedBuffer::storage(device, "materials"),
         }
@@ -61,7 +68,7 @@ impl SceneResources {
     pub fn uploaded(&self) -> u64 {
         let own = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials];
         let buffers = own.into_iter().chain([&self.instancers, &self.places]).map(SyncedBuffer::uploaded);
-        buffers.sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
+        buffers.sum::<u64>() + self.params.uploaded() + self.tapes.uploaded() + self.bricks.uploaded()
     }
 
     /// Words of tapes that the device can hold.
@@ -83,6 +90,7 @@ impl SceneResources {
         let (windows, templates) = template_windows(flat, &standpoints.params, keys);
         let mut is_new = self.template_rows.set(device, queue, &templates);
         is_new |= self.tapes.hold(device, queue, trees);
+        is_new |= self.bricks.hold(device, queue, &flat.bricks);
         let placed = |((component, at), tree): ((&Component, &Standpoint), &Option<Arc<CellTree>>)| {
             let gpu = GpuComponent::new(component, at);
             let place = tree.as_ref().and_then(|tree| Some((tree, self.tapes.place(tree)?)));
@@ -110,10 +118,12 @@ impl SceneResources {
     fn upload_instancers(&mut self, gpu: &Gpu, flat: &FlatScene, eye: DVec3) -> bool {
         let mut rows: Vec<[f32; 4]> = Vec::new();
         let mut bytes = vec![0; flat.instancers.len() * INSTANCER_STRIDE];
+        self.placed.clear();
         for (instancer, slot) in flat.instancers.iter().zip(bytes.chunks_exact_mut(INSTANCER_STRIDE)) {
             let gpu = gpu_instancer(instancer, eye, rows.len() as u32);
             slot[..size_of::<GpuInstancer>()].copy_from_slice(bytemuck::bytes_of(&gpu));
             rows.extend_from_slice(gpu_places(instancer));
+            self.placed.push(gpu);
         }
         bytes.resize(bytes.len().max(INSTANCER_STRIDE), 0);
         let Gpu { device, queue, .. } = gpu;
@@ -131,6 +141,7 @@ impl SceneResources {
                 subject: window(self.components.buffer(), size_of::<GpuComponent>()),
                 rows: window(rows.buffer(), PIPELINE_WINDOW),
                 tapes: self.tapes.binding(),
+                bricks: self.bricks.binding(),
                 instancer: window(self.instancers.buffer(), size_of::<GpuInstancer>()),
                 places: self.places.binding(),
             };
@@ -141,6 +152,26 @@ impl SceneResources {
     /// First word of the tapes of a component.
     pub fn place(&self, tree: &Arc<CellTree>) -> Option<u32> {
         self.tapes.place(tree)
+    }
+
+    /// The instancers, for queries of the whole scene, which have to find the components of their types.
+    pub fn queried_instancers(&self, flat: &FlatScene) -> Vec<GpuInstancer> {
+        let mut all = self.placed.clone();
+        for (gpu, instancer) in all.iter_mut().zip(&flat.instancers) {
+            gpu.cell_visits = cell_loops(instancer);
+            gpu.components.fill(u32::MAX);
+        }
+        for (index, component) in flat.components.iter().enumerate() {
+            if let Some(of) = component.instanced {
+                all[of.instancer as usize].components[of.kind as usize] = index as u32;
+            }
+        }
+        all
+    }
+
+    /// The places of all instancers.
+    pub fn places(&self) -> wgpu::BindingResource<'_> {
+        self.places.binding()
     }
 
     /// All materials.
@@ -157,6 +188,7 @@ impl SceneResources {
                 subject: window(self.components.buffer(), size_of::<GpuComponent>()),
                 rows: window(rows.buffer(), PIPELINE_WINDOW),
                 tapes: self.tapes.binding(),
+                bricks: self.bricks.binding(),
             };
             group.bind(device, &self.layout)
         })

@@ -8,11 +8,12 @@ use super::evaluation::EvaluationCost;
 use super::frame::Frame;
 use super::resources::FrameResources;
 use super::scene::SceneResources;
+use crate::frame::copies_cost::walk_leaves;
 use crate::gpu::Gpu;
 use crate::gpu::readback::read_words;
 use crate::passes::Passes;
 use crate::recipe::Pass;
-use crate::resources::hierarchy::query_components;
+use crate::resources::hierarchy::{Obstacles, query_components};
 use crate::resources::shadows::{SceneQuery, ShadowSettings};
 use isolith_field::standpoint::Standpoints;
 use isolith_field::{Component, FlatScene, Warning};
@@ -64,6 +65,8 @@ impl QueryCost {
 pub struct ShadowWork {
     settings: ShadowSettings,
     cost: QueryCost,
+    /// Expected leaves for the copies that a cone passes.
+    walk: f64,
     /// Lights beyond those with shadows.
     left: usize,
 }
@@ -74,13 +77,15 @@ impl ShadowWork {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let settings = ShadowSettings::new(flat, lights, pixels, bytes);
         let left = if flat.environment.shadowing.shadows { lights - settings.lights as usize } else { 0 };
-        settings.is_on().then(|| Self { settings, cost: QueryCost::of(flat, chosen), left })
+        let walk = flat.instancers.iter().map(walk_leaves).sum();
+        settings.is_on().then(|| Self { settings, cost: QueryCost::of(flat, chosen), walk, left })
     }
 
     /// Expected leaves per pixel.
     pub fn per_pixel(&self) -> f64 {
-        let occlusion = if self.settings.cones > 0 { OCCLUSION_EVALUATIONS } else { 0.0 };
-        self.cost.leaves * (f64::from(self.settings.lights) * LIGHT_EVALUATIONS + occlusion)
+        let lights = f64::from(self.settings.lights);
+        let (occlusion, around) = if self.settings.cones > 0 { (OCCLUSION_EVALUATIONS, 1.0) } else { (0.0, 0.0) };
+        self.cost.leaves * (lights * LIGHT_EVALUATIONS + occlusion) + self.walk * (lights + around)
     }
 
     /// Numbers of lights with and without shadows.
@@ -118,7 +123,8 @@ pub fn upload(
     let Some(ShadowWork { settings, cost, .. }) = work else { return Ok(resources.shadows.switch_off()) };
     let SeenScene { flat, meshes, camera, size, standpoints } = seen;
     let has_meshes = settings.lights > 0 && meshes.iter().any(Option::is_some);
-    passes.shadow.prepare(&gpu.device, flat, [cost.by_tapes, has_meshes], settings.parts(), options)?;
+    let obstacles = Obstacles { meshes: has_meshes, copies: !flat.instancers.is_empty() };
+    passes.shadow.prepare(&gpu.device, flat, (cost.by_tapes, obstacles), settings.parts(), options)?;
     let mut components = query_components(flat, camera.position, &standpoints.all);
     if cost.by_tapes {
         for ((component, tree), at) in components.iter_mut().zip(&chosen.trees).zip(&standpoints.all) {
@@ -128,7 +134,8 @@ pub fn upload(
         }
     }
     let (origin, iterations) = (camera.position, cost.iterations);
-    let query = SceneQuery { components, origin, iterations, meshes, has_meshes };
+    let instancers = scene.queried_instancers(flat);
+    let query = SceneQuery { components, origin, iterations, meshes, has_meshes, instancers };
     Ok(resources.shadows.upload(gpu, flat, &query, settings, size))
 }
 

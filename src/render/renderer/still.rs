@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::frame::Sampling;
-use super::{RenderError, Renderer, Slot};
-use crate::gpu::readback::read_color;
+use super::{Frame, RenderError, Renderer, Slot};
+use crate::gpu::readback::{read_color, read_mesh_colors};
 use crate::passes::overlay_settings::OverlaySettings;
 use isolith_field::debug_view::{DepthRange, ViewMode};
-use isolith_field::{FlatScene, GBuffer, Warning};
+use isolith_field::{FlatScene, GBuffer, HitTarget, Warning};
 use isolith_geometry::{Camera, Lens};
 use isolith_mesh::TriangleMesh;
 
@@ -21,6 +21,29 @@ pub struct Film {
     pub is_transparent: bool,
     /// The camera's lens.
     pub lens: Lens,
+}
+
+/// Follows a still while it is rendered.
+pub trait StillWatch {
+    /// Called between dispatches with the fraction that is done; returns whether to continue.
+    fn progress(&mut self, share: f32) -> bool;
+
+    /// Whether to read back the mean of the samples so far, which takes a little time.
+    fn wants_picture(&mut self) -> bool {
+        false
+    }
+
+    /// Receives that mean, as sRGB and alpha, and its number of samples.
+    fn picture(&mut self, _color: &[[u8; 4]], _samples: u32) {}
+}
+
+/// A watch that only counts.
+struct ProgressOnly<'a>(&'a mut dyn FnMut(f32) -> bool);
+
+impl StillWatch for ProgressOnly<'_> {
+    fn progress(&mut self, share: f32) -> bool {
+        self.0(share)
+    }
 }
 
 impl Renderer {
@@ -70,6 +93,19 @@ impl Renderer {
         size: [u32; 2],
         progress: &mut dyn FnMut(f32) -> bool,
     ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
+        self.render_samples_for(film, flat, meshes, camera, size, &mut ProgressOnly(progress))
+    }
+
+    /// [`Renderer::render_samples`] for a watch that may also look at the picture while it refines.
+    pub fn render_samples_for(
+        &mut self,
+        film: Film,
+        flat: &FlatScene,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        camera: &Camera,
+        size: [u32; 2],
+        watch: &mut dyn StillWatch,
+    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
         let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
         self.accumulate(&mut frame, film.is_transparent);
         let samples = film.samples.max(1);
@@ -77,7 +113,7 @@ impl Renderer {
         loop {
             while !frame.is_done() {
                 let done = frame.samples() as f32 + frame.progress();
-                if !progress(done / samples as f32) {
+                if !watch.progress(done / samples as f32) {
                     return Err(RenderError::Canceled);
                 }
                 self.advance(&mut frame, Duration::ZERO)?;
@@ -87,6 +123,9 @@ impl Renderer {
             }
             if frame.samples() >= samples {
                 break;
+            }
+            if watch.wants_picture() {
+                watch.picture(&self.read_color_of(&frame)?, frame.samples());
             }
             if film.lens.is_open() {
                 let (index, is_transparent) = (frame.samples(), film.is_transparent);
@@ -99,8 +138,42 @@ impl Renderer {
         }
         let (buffers, warnings) = first.expect("there is a first sample");
         let radiance = self.read_radiance(&frame)?;
-        let color = read_color(&self.gpu, &self.resources.slot(frame.slot).targets.color)?;
-        progress(1.0);
+        let color = self.read_color_of(&frame)?;
+        watch.progress(1.0);
         Ok((GBuffer { color, radiance, ..buffers }, warnings))
+    }
+
+    fn read_color_of(&self, frame: &Frame) -> Result<Vec<[u8; 4]>, RenderError> {
+        Ok(read_color(&self.gpu, &self.resources.slot(frame.slot).targets.color)?)
+    }
+
+    /// The linear base color at the center of each pixel, black without a hit. `flat` is the scene as of
+    /// [`FlatScene::in_base_colors`].
+    pub fn render_base_colors(
+        &mut self,
+        flat: &FlatScene,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        camera: &Camera,
+        size: [u32; 2],
+        progress: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Vec<[f32; 3]>, RenderError> {
+        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
+        self.accumulate(&mut frame, true);
+        while !frame.is_done() {
+            if !progress(frame.progress()) {
+                return Err(RenderError::Canceled);
+            }
+            self.advance(&mut frame, Duration::ZERO)?;
+        }
+        let mut colors: Vec<_> = self.read_radiance(&frame)?.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
+        // The light that a mesh reflects depends on its own material, so its color is read where it is stored.
+        let buffers = self.read(&frame)?;
+        let of_meshes = read_mesh_colors(&self.gpu, &self.resources.slot(frame.slot).targets)?;
+        for (pixel, color) in colors.iter_mut().enumerate() {
+            if matches!(buffers.hit_target(pixel), HitTarget::Mesh(_)) {
+                *color = of_meshes[pixel];
+            }
+        }
+        Ok(colors)
     }
 }

@@ -8,11 +8,14 @@ use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 use crate::frame::plan::MAX_ITERATIONS;
 use crate::gpu::Gpu;
 use crate::resources::buffers::SyncedBuffer;
-use crate::resources::layouts::{bind, entry, layout, read_storage, uniform};
+use crate::resources::layouts::{entry, layout, read_storage, uniform};
 use crate::resources::uniforms::{GpuComponent, UNBOUNDED};
 use isolith_field::FlatScene;
 use isolith_field::hierarchy::{Hierarchy, HierarchyNode};
 use isolith_field::standpoint::Standpoint;
+
+/// In the link of a leaf: it is for all copies of an instancer, whose index the other bits are.
+pub const COPIES_LINK: u32 = 1 << 31;
 
 /// A node of the hierarchy. Its box is relative to the origin of the query.
 #[repr(C)]
@@ -84,10 +87,21 @@ pub fn query_components(flat: &FlatScene, origin: DVec3, standpoints: &[Standpoi
     let all = flat.components.iter().enumerate().map(|(i, component)| {
         let at = standpoints.get(i).unwrap_or(&at_origin);
         // In narrow pictures the eye lies elsewhere, but a query has one origin for all components.
+        // Points are mapped to the space of a copy.
+        let origin = if component.instanced.is_some() { DVec3::ZERO } else { origin };
         let eye = origin - component.origin - at.shift;
         GpuComponent::new(component, &Standpoint { ray_origin_depth: 0.0, eye, ..*at })
     });
     all.collect()
+}
+
+/// What rays and cones meet besides components.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Obstacles {
+    /// Meshes.
+    pub meshes: bool,
+    /// Copies of instancers.
+    pub copies: bool,
 }
 
 /// The buffers of group 3 for passes that query the scene.
@@ -99,17 +113,13 @@ pub struct HierarchyBuffers {
 }
 
 impl HierarchyBuffers {
-    /// The layout of the buffers, followed by that of the meshes if rays meet them too.
-    pub fn layout(device: &wgpu::Device, meshes: bool) -> BindGroupLayout {
-        let types = [read_storage(), read_storage(), uniform(false)];
-        let of_meshes = meshes.then(read_storage);
-        let entries: Vec<_> = types
-            .into_iter()
-            .chain(of_meshes)
-            .enumerate()
-            .map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, ty))
-            .collect();
-        layout(device, "hierarchy", &entries)
+    /// The layout of the buffers, and of what rays and cones meet besides components.
+    pub fn layout(device: &wgpu::Device, Obstacles { meshes, copies }: Obstacles) -> BindGroupLayout {
+        let types = [Some(read_storage()), Some(read_storage()), Some(uniform(false))];
+        let others = [meshes.then(read_storage), copies.then(read_storage), copies.then(read_storage)];
+        let all = types.into_iter().chain(others).enumerate();
+        let entries = all.filter_map(|(i, ty)| Some(entry(i as u32, ShaderStages::COMPUTE, ty?)));
+        layout(device, "hierarchy", &entries.collect::<Vec<_>>())
     }
 
     /// Empty buffers.
@@ -141,15 +151,20 @@ impl HierarchyBuffers {
         grown.contains(&true)
     }
 
-    /// Bind group of the buffers, and of those of the meshes.
+    /// Bind group of the buffers, of that of the meshes, and of those of the instancers and their places.
     pub fn bind(
         &self,
         device: &wgpu::Device,
         layout: &BindGroupLayout,
         meshes: Option<wgpu::BindingResource<'_>>,
+        copies: Option<[wgpu::BindingResource<'_>; 2]>,
     ) -> BindGroup {
         let own = [self.nodes.binding(), self.components.binding(), self.limits.binding()];
-        let all: Vec<_> = own.into_iter().chain(meshes).collect();
-        bind(device, "hierarchy", layout, &all)
+        let [instancers, places] = copies.map_or([None, None], |copies| copies.map(Some));
+        let all = own.into_iter().map(Some).chain([meshes, instancers, places]).enumerate();
+        let entries: Vec<_> = all
+            .filter_map(|(i, resource)| Some(wgpu::BindGroupEntry { binding: i as u32, resource: resource? }))
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("hierarchy"), layout, entries: &entries })
     }
 }

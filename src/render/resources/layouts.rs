@@ -9,6 +9,8 @@ use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
 pub const PARAMS_FORMAT: Format = Format::Rgba32Float;
 /// Format of the texture of tapes.
 pub const TAPES_FORMAT: Format = Format::Rg32Uint;
+/// Format of the texture of distance bricks.
+pub const BRICKS_FORMAT: Format = Format::Rgba32Uint;
 
 /// Format of the texture of images.
 pub const TEXELS_FORMAT: Format = Format::R32Uint;
@@ -52,6 +54,8 @@ bindings! {
         rows: uniform(true),
         /// Tapes.
         tapes: read_only_texture(TAPES_FORMAT),
+        /// Distance bricks of models.
+        bricks: read_only_texture(BRICKS_FORMAT),
     }
 }
 
@@ -68,6 +72,8 @@ bindings! {
         rows: uniform(true),
         /// Tapes.
         tapes: read_only_texture(TAPES_FORMAT),
+        /// Distance bricks of models.
+        bricks: read_only_texture(BRICKS_FORMAT),
         /// The instancer, at a dynamic offset.
         instancer: uniform(true),
         /// Places of all instancers that have lists of them.

@@ -1,6 +1,7 @@
 //! Resources on the device: buffers, textures, targets, layouts of bind groups, and the structs of the shaders.
 
 pub mod accumulation;
+pub mod brick_texture;
 pub mod buffers;
 pub mod hierarchy;
 pub mod layouts;

@@ -7,10 +7,11 @@ use bytemuck::{Pod, Zeroable};
 use crate::frame::plan::MOST_SHADOW_PIXELS;
 use crate::gpu::Gpu;
 use crate::resources::buffers::SyncedBuffer;
-use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits};
+use crate::resources::hierarchy::{COPIES_LINK, HierarchyBuffers, Obstacles, SceneLimits};
 use crate::resources::mesh_rays::MeshRayBuffer;
 use crate::resources::uniforms::GpuComponent;
 use glam::DVec3;
+use isolith_field::copies::{FlatInstancer, GpuInstancer};
 use isolith_field::hierarchy::Hierarchy;
 use isolith_field::light::occlusion::OCCLUSION_CONES;
 use isolith_field::light::shadow::cone_fineness;
@@ -42,8 +43,11 @@ pub struct ShadowSettings {
 
 /// Shares in a word.
 const BYTES: u64 = 4;
-/// Words of the state of an unfinished pixel, of its shadows and again of its occlusion: `SHADOW_STATE` in `shaders/light/shadow_settings.wgsl`.
-pub const SHADOW_STATE: usize = 12;
+/// Words of the state of an unfinished pixel, of its shadows and again of its occlusion; further ones in scenes with
+/// instancers. `shaders/light/shadow_settings.wgsl` has the same numbers.
+pub const SHADOW_WORDS: usize = 12;
+/// See [`SHADOW_WORDS`].
+pub const SHADOW_COPIES_WORDS: usize = 5;
 
 impl ShadowSettings {
     /// The settings of a scene with `light_count` lights, for a picture of `pixels` pixels and buffers of at most
@@ -90,6 +94,8 @@ pub struct SceneQuery<'a> {
     pub meshes: &'a [Option<Arc<TriangleMesh>>],
     /// Whether meshes cast shadows.
     pub has_meshes: bool,
+    /// The instancers, with the components of their types.
+    pub instancers: Vec<GpuInstancer>,
 }
 
 /// The buffers.
@@ -101,8 +107,10 @@ pub struct ShadowBuffers {
     pub hierarchy: HierarchyBuffers,
     /// The meshes, once a scene had some.
     pub meshes: Option<MeshRayBuffer>,
-    /// Whether meshes cast shadows in this frame.
-    pub has_meshes: bool,
+    /// The instancers of the scene.
+    pub instancers: SyncedBuffer,
+    /// What casts shadows in this frame besides components.
+    pub obstacles: Obstacles,
     /// The settings.
     pub settings: SyncedBuffer,
     /// The shares of all lights and cones, for each pixel.
@@ -120,7 +128,8 @@ impl ShadowBuffers {
             used: ShadowSettings::default(),
             hierarchy: HierarchyBuffers::new(device),
             meshes: None,
-            has_meshes: false,
+            instancers: SyncedBuffer::storage(device, "instancers of queries"),
+            obstacles: Obstacles::default(),
             settings: SyncedBuffer::uniform(device, "shadow settings"),
             shares: SyncedBuffer::read_back(device, "shadow shares"),
             states: SyncedBuffer::storage(device, "shadow states"),
@@ -139,24 +148,28 @@ impl ShadowBuffers {
     ) -> bool {
         let Gpu { device, queue, .. } = gpu;
         let pixels = size[0] as usize * size[1] as usize;
-        let without_copies = (!flat.instancers.is_empty()).then(|| hierarchy_without_copies(flat));
-        let hierarchy = without_copies.as_ref().unwrap_or_else(|| flat.hierarchy());
+        let with_copies = (!flat.instancers.is_empty()).then(|| hierarchy_with_copies(flat));
+        let hierarchy = with_copies.as_ref().unwrap_or_else(|| flat.hierarchy());
         let mut limits = SceneLimits::new(hierarchy, query.iterations);
-        let had_meshes = std::mem::replace(&mut self.has_meshes, query.has_meshes);
-        let mut meshes_are_new = had_meshes != self.has_meshes;
-        if self.has_meshes {
+        let obstacles = Obstacles { meshes: query.has_meshes, copies: with_copies.is_some() };
+        let mut obstacles_are_new = std::mem::replace(&mut self.obstacles, obstacles) != obstacles;
+        if obstacles.copies {
+            obstacles_are_new |= self.instancers.set(device, queue, bytemuck::cast_slice(&query.instancers));
+        }
+        if obstacles.meshes {
             // Visits of meshes count as iterations, too.
             limits.max_evaluations = (limits.max_evaluations * 3 / 5).max(2);
             let held = self.meshes.get_or_insert_with(|| MeshRayBuffer::new(device));
-            meshes_are_new |= held.set(gpu, flat, query.meshes, query.origin);
+            obstacles_are_new |= held.set(gpu, flat, query.meshes, query.origin);
         }
+        let words = SHADOW_WORDS + if obstacles.copies { SHADOW_COPIES_WORDS } else { 0 };
         let changed = [
-            meshes_are_new,
+            obstacles_are_new,
             self.used.is_on() != settings.is_on(),
             self.hierarchy.set(gpu, hierarchy, query.origin, &query.components, limits),
             self.settings.set(device, queue, bytemuck::bytes_of(&settings)),
             self.shares.reserve(device, pixels * settings.stride as usize * 4),
-            self.states.reserve(device, pixels.min(MOST_SHADOW_PIXELS as usize) * 2 * SHADOW_STATE * 4),
+            self.states.reserve(device, pixels.min(MOST_SHADOW_PIXELS as usize) * 2 * words * 4),
         ];
         self.used = settings;
         changed.contains(&true)
@@ -164,7 +177,7 @@ impl ShadowBuffers {
 
     /// Number of meshes that cast no shadows for want of room.
     pub fn left_out(&self) -> usize {
-        let meshes = self.meshes.as_ref().filter(|_| self.has_meshes);
+        let meshes = self.meshes.as_ref().filter(|_| self.obstacles.meshes);
         meshes.map_or(0, |meshes| meshes.left_out().len())
     }
 
@@ -187,13 +200,20 @@ impl ShadowBuffers {
     }
 }
 
-/// The hierarchy over the components that are no types of instancers: cones do not meet copies.
-fn hierarchy_without_copies(flat: &FlatScene) -> Hierarchy {
+/// The hierarchy over the components that are no types of instancers, and over the instancers: each is one leaf, so that
+/// a cone walks once past the copies of all types.
+fn hierarchy_with_copies(flat: &FlatScene) -> Hierarchy {
     let bounds = |component: &Component| match component.instanced {
         None => component.world_bounds(),
         Some(_) => Aabb::EMPTY,
     };
-    Hierarchy::build(&flat.components.iter().map(bounds).collect::<Vec<_>>())
+    let of_copies = flat.instancers.iter().map(FlatInstancer::world_bounds);
+    let mut tree = Hierarchy::build(&flat.components.iter().map(bounds).chain(of_copies).collect::<Vec<_>>());
+    let first = flat.components.len() as u32;
+    let link = |item: &mut u32| *item = item.checked_sub(first).map_or(*item, |at| COPIES_LINK | at);
+    tree.nodes.iter_mut().filter(|node| node.is_leaf()).for_each(|node| link(&mut node.link));
+    tree.unbounded.iter_mut().for_each(link);
+    tree
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::attachment::Attachment;
 use crate::drawn::{Corners, Points};
 use crate::heights::Heights;
+use crate::model_file::ModelFile;
 use crate::params::{ParamField, ParamValue};
 use isolith_font::Face;
 
@@ -130,4 +131,5 @@ not_packed! {
     Corners = Self::new([]);
     Attachment<Heights> = Self::NONE;
     Attachment<Face> = Self::NONE;
+    ModelFile = Self::default();
 }

@@ -8,7 +8,7 @@ use crate::random::Random;
 use crate::{Evaluator, OpSet, Options, assemble, assemble_plain};
 use evaluate::Machine;
 use isolith_field::PreparedShape;
-use isolith_field::eval::shape_distance;
+use isolith_field::eval::{Payload as _, shape_distance};
 use isolith_scene::{Limits, ParamValue, Shape, ShapeKind};
 
 const DETACH: &str = include_str!("../../../shaders/sdf/detach.wgsl");
@@ -99,14 +99,27 @@ fn gradients_of_shapes_are_those_of_central_differences() {
     }
 }
 
+/// The texels of a shape of bricks.
+fn texels_of(body: &PreparedShape) -> String {
+    let count = body.bricks.as_ref().map_or(0, |levels| levels.texels());
+    let texel = |at: usize| {
+        let [x, y, z, w] = body.texel(at);
+        format!("vec4u({x}u, {y}u, {z}u, {w}u)")
+    };
+    let texels: Vec<String> = (0..count).map(texel).collect();
+    let texels = texels.join(", ");
+    format!("fn bricks_texel(at: u32) -> vec4u {{ var all = array<vec4u, {count}>({texels}); return all[at]; }}\n")
+}
+
 /// A shape with its payload: its source, in which `name` is its function in the form of a shape without payload.
 fn with_data(name: &str, body: &PreparedShape) -> String {
     let rows: Vec<String> =
         body.payload.iter().map(|r| format!("vec4f({:?}, {:?}, {:?}, {:?})", r[0], r[1], r[2], r[3])).collect();
     let (count, rows) = (rows.len(), rows.join(", "));
     let source = assemble_plain(&format!("sdf/{name}.wgsl")).unwrap();
+    let texels = body.bricks.as_ref().map_or(String::new(), |_| texels_of(body));
     format!(
-        "{source}fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({rows}); return rows[at]; }}
+        "{source}{texels}fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({rows}); return rows[at]; }}
         fn {name}(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return sdf_{name}(p, a, b, 0u); }}"
     )
 }
@@ -127,7 +140,7 @@ fn gradients_of_shapes_with_data_are_those_of_central_differences() {
         for _ in 0..60 {
             let p = random.point(0.8);
             let derived = machine.call(&format!("dual_{name}"), &[&p, a, b]);
-            let reference = shape_distance(body.kind, p, &body.parameters, &|row| body.payload[row]);
+            let reference = shape_distance(body.kind, p, &body.parameters, &body);
             assert!((derived[3] - reference).abs() < 1e-5, "{name} at {p:?}: {derived:?}, {reference}");
             let Some(gradient) = differences(&machine, name, p, a, b) else { continue };
             compared += 1;

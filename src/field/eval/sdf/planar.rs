@@ -2,8 +2,26 @@
 
 use crate::eval::Real;
 
-/// The payload of a shape: the row at an index.
-pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
+/// The payload of a shape.
+pub trait Payload {
+    /// The row at an index.
+    fn row(&self, index: usize) -> [f64; 4];
+    /// The texel at an index, of shapes made of bricks.
+    fn texel(&self, index: usize) -> [u32; 4];
+}
+
+/// A payload of rows only.
+impl<F: Fn(usize) -> [f64; 4]> Payload for F {
+    fn row(&self, index: usize) -> [f64; 4] {
+        self(index)
+    }
+    fn texel(&self, _: usize) -> [u32; 4] {
+        [0; 4]
+    }
+}
+
+/// The payload of a shape, as its function gets it.
+pub type Data<'a> = &'a dyn Payload;
 
 /// Distance to a prism or a solid of revolution, from the distances to its profile and to its caps.
 pub fn extruded<T: Real>(d: [T; 2]) -> T {

@@ -1,13 +1,12 @@
 //! The frames of an animation: which, when, and the names of their files.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use super::failure::Failure;
-use super::input::is_standard;
-use crate::scene::limits::{FRAMES_PER_SECOND, KEY_TIME};
+use isolith_scene::limits::{FRAMES_PER_SECOND, KEY_TIME};
 
-/// Most frames of one command.
+/// Most frames of one order.
 const MAX_FRAMES: i64 = 1_000_000;
 
 /// The frames from the first to the last, both included.
@@ -18,6 +17,20 @@ pub struct FrameRange {
 }
 
 impl FrameRange {
+    /// The frames from `first` to `last`.
+    ///
+    /// # Errors
+    /// They are in the wrong order, or too many.
+    pub fn new(first: i64, last: i64) -> Result<Self, String> {
+        if first > last {
+            return Err(format!("the first frame, {first}, is after the last, {last}"));
+        }
+        if last.checked_sub(first).is_none_or(|more| more >= MAX_FRAMES) {
+            return Err(format!("there are more than {MAX_FRAMES} frames"));
+        }
+        Ok(Self { first, last })
+    }
+
     /// The frames in their order.
     pub fn iter(self) -> impl ExactSizeIterator<Item = i64> {
         let count = (self.last - self.first + 1) as usize;
@@ -25,15 +38,21 @@ impl FrameRange {
     }
 
     /// The moment of a frame. Frame 0 is at 0 seconds.
-    pub fn time_of(self, frame: i64, frames_per_second: f64) -> Result<f64, Failure> {
+    pub fn time_of(self, frame: i64, frames_per_second: f64) -> Result<f64, String> {
         let time = frame as f64 / frames_per_second;
         match KEY_TIME.accept(time) {
             true => Ok(time),
             false => {
                 let [least, most] = KEY_TIME.hard;
-                Err(Failure::Usage(format!("--frames: frame {frame} is at {time} s; times are {least} to {most} s")))
+                Err(format!("frame {frame} is at {time} s; times are {least} to {most} s"))
             }
         }
+    }
+}
+
+impl fmt::Display for FrameRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}..{}", self.first, self.last)
     }
 }
 
@@ -43,13 +62,7 @@ impl FromStr for FrameRange {
     fn from_str(text: &str) -> Result<Self, String> {
         let ends = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
         let (first, last): (i64, i64) = ends.ok_or("give the first and the last frame, like 1..48")?;
-        if first > last {
-            return Err(format!("the first frame, {first}, is after the last, {last}"));
-        }
-        if last.checked_sub(first).is_none_or(|more| more >= MAX_FRAMES) {
-            return Err(format!("are more than {MAX_FRAMES} frames"));
-        }
-        Ok(Self { first, last })
+        Self::new(first, last)
     }
 }
 
@@ -64,14 +77,11 @@ pub fn parse_fps(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The name has no place for the number, so that each frame would replace the one before it.
-pub fn numbered(pattern: &Path, frame: i64) -> Result<PathBuf, Failure> {
-    let refuse = |reason: &str| Err(Failure::Usage(format!("{}: {reason}", pattern.display())));
-    if is_standard(pattern) {
-        return refuse("standard output holds one picture, not one for each of --frames");
-    }
+pub fn numbered(pattern: &Path, frame: i64) -> Result<PathBuf, String> {
     let name = pattern.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let Some(end) = name.rfind('#') else {
-        return refuse("--frames needs a run of # in the name, which becomes the number, like frame.####.png");
+        let reason = "frames need a run of # in the name, which becomes the number, like frame.####.png";
+        return Err(format!("{}: {reason}", pattern.display()));
     };
     let start =
         name[..end].rfind(|c| c != '#').map_or(0, |at| at + name[at..].chars().next().map_or(1, char::len_utf8));
@@ -110,6 +120,6 @@ mod tests {
         ] {
             assert_eq!(named(pattern, frame).unwrap(), name, "{pattern}");
         }
-        assert!(named("a.png", 1).is_err() && named("-", 1).is_err() && named("###/a.png", 1).is_err());
+        assert!(named("a.png", 1).is_err() && named("###/a.png", 1).is_err());
     }
 }

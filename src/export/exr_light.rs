@@ -5,6 +5,7 @@ use std::io::{Cursor, Error};
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage};
 
+use super::exr_header::sort_attributes;
 use crate::scene::DisplaySettings;
 
 /// An image of `radiance`: light before exposure and view transform, multiplied by coverage, and coverage. The
@@ -20,18 +21,26 @@ pub fn encode(
         (r, g, b, a)
     };
     let mut attributes = LayerAttributes { software_name: Some(Text::new_or_panic("Isolith")), ..Default::default() };
-    let other = [
-        ("isolith.exposure", AttributeValue::F32(display.exposure as f32)),
-        ("isolith.viewTransform", AttributeValue::Text(Text::new_or_panic(display.view_transform.label()))),
-        ("isolith.samples", AttributeValue::I32(samples.try_into().unwrap_or(i32::MAX))),
-    ];
-    attributes.other.extend(other.map(|(name, value)| (Text::new_or_panic(name), value)));
+    attributes.other.extend(view_attributes(display, samples));
     let size = (width as usize, height as usize);
     let layer = Layer::new(size, attributes, Encoding::FAST_LOSSLESS, SpecificChannels::rgba(pixel));
     let mut bytes = Cursor::new(Vec::new());
     let written = Image::from_layer(layer).write().to_buffered(&mut bytes);
     written.map_err(|error| Error::other(error.to_string()))?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes);
+    Ok(bytes)
+}
+
+/// The attributes about the view of the scene.
+pub fn view_attributes(display: &DisplaySettings, samples: u32) -> [(Text, AttributeValue); 3] {
+    let view_transform = Text::new_or_panic(display.view_transform.label());
+    [
+        ("isolith.exposure", AttributeValue::F32(display.exposure as f32)),
+        ("isolith.viewTransform", AttributeValue::Text(view_transform)),
+        ("isolith.samples", AttributeValue::I32(samples.try_into().unwrap_or(i32::MAX))),
+    ]
+    .map(|(name, value)| (Text::new_or_panic(name), value))
 }
 
 #[cfg(test)]

@@ -1,21 +1,24 @@
 //! Buffers → files, by the same atomic writer as scenes: a reader never sees a partial file.
 
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
-use super::failure::Failure;
-use super::input::is_standard;
-use super::{exr_ids, exr_light};
+use super::error::ExportError;
+use super::still::{Drawn, Still};
+use super::{exr_ids, exr_layers, exr_light};
 use crate::field::{FlatScene, GBuffer, HitTarget};
 use crate::scene::file;
+use crate::session::ending;
 
 /// The content of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// The picture.
     Color,
+    /// The picture with all other quantities and the base color, as layers of one OpenEXR file.
+    Layers,
     /// Distance along the ray, in meters.
     Depth,
     /// World normal.
@@ -28,7 +31,7 @@ impl Quantity {
     /// Its name in JSON, which is that of its option.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Color => "output",
+            Self::Color | Self::Layers => "output",
             Self::Depth => "depth",
             Self::Normal => "normal",
             Self::NodeId => "node-id",
@@ -36,38 +39,22 @@ impl Quantity {
     }
 }
 
-/// Writes one quantity of the buffers in the format of the path's extension; `-` is standard output and gets a PNG.
-/// Returns a note for reading the file, to be printed after its name.
-pub fn write(
-    quantity: Quantity,
-    path: &Path,
-    buffers: &GBuffer,
-    flat: &FlatScene,
-    samples: u32,
-) -> Result<String, Failure> {
-    let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
-    let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat, samples).map_err(failed)?;
-    if is_standard(path) {
-        let mut out = std::io::stdout().lock();
-        out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| failed(error.to_string()))?;
-    } else {
-        write_bytes(path, &bytes)?;
-    }
-    Ok(note)
-}
-
-fn encode(
-    quantity: Quantity,
-    as_exr: bool,
-    buffers: &GBuffer,
-    flat: &FlatScene,
-    samples: u32,
-) -> Result<(Vec<u8>, String), String> {
+/// Encodes one quantity of a picture as OpenEXR or PNG. Returns a note for reading the file, too, to be told after its
+/// name.
+///
+/// # Errors
+/// The encoder refuses, with its reason.
+pub fn encode(quantity: Quantity, as_exr: bool, picture: &Drawn, still: &Still) -> Result<(Vec<u8>, String), String> {
+    let (buffers, flat, samples) = (&picture.buffers, &*still.flat, still.film.samples);
+    let size = [buffers.width, buffers.height];
     let (image, note) = match (quantity, as_exr) {
         (Quantity::Color, true) => {
-            let size = [buffers.width, buffers.height];
             let bytes = exr_light::encode(size, &buffers.radiance, &flat.display, samples);
             return Ok((bytes.map_err(|error| error.to_string())?, " (linear light)".into()));
+        }
+        (Quantity::Layers, _) => {
+            let bytes = exr_layers::encode(picture, &node_ids(buffers, flat), &still.names, &flat.display, samples);
+            return Ok((bytes.map_err(|error| error.to_string())?, " (linear light, and layers)".into()));
         }
         (Quantity::Color, false) => (color(buffers), String::new()),
         (Quantity::Depth, true) => (raw(buffers, |i| [buffers.depth[i]; 3]), " (meters)".into()),
@@ -75,9 +62,8 @@ fn encode(
         (Quantity::Normal, true) => (raw(buffers, |i| buffers.normal[i]), " (X, Y, Z)".into()),
         (Quantity::Normal, false) => (normal_picture(buffers), String::new()),
         (Quantity::NodeId, true) => {
-            let ids: Vec<u64> = (0..buffers.depth.len()).map(|i| node_id(buffers, flat, i)).collect();
-            let bytes = exr_ids::encode(buffers.width, buffers.height, &ids).map_err(|error| error.to_string())?;
-            return Ok((bytes, " (ids, whole numbers)".into()));
+            let bytes = exr_ids::encode(size[0], size[1], &node_ids(buffers, flat));
+            return Ok((bytes.map_err(|error| error.to_string())?, " (ids, whole numbers)".into()));
         }
         (Quantity::NodeId, false) => (node_id_picture(buffers, flat), String::new()),
     };
@@ -87,27 +73,38 @@ fn encode(
     Ok((bytes.into_inner(), note))
 }
 
-/// The path's extension in lower case.
-pub fn ending(path: &Path) -> String {
-    path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
+/// Writes one quantity in the format of the path's extension, atomically. Returns a note for reading the file.
+///
+/// # Errors
+/// It cannot be encoded or written.
+pub fn write(quantity: Quantity, path: &Path, picture: &Drawn, still: &Still) -> Result<String, ExportError> {
+    let failed = |reason: String| ExportError::Write { path: path.to_path_buf(), reason };
+    let (bytes, note) = encode(quantity, ending(path) == "exr", picture, still).map_err(failed)?;
+    write_bytes(path, &bytes)?;
+    Ok(note)
 }
 
 /// Writes one output atomically.
-pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
     file::replace(path, bytes, 0)
-        .map_err(|error| Failure::Write { path: path.to_path_buf(), reason: error.to_string() })
+        .map_err(|error| ExportError::Write { path: path.to_path_buf(), reason: error.to_string() })
 }
 
 /// Refuses outputs that cannot be written, before minutes of rendering, and outputs that would replace another output
 /// or an input: a link whose name ends in `.png` can point to the scene.
-pub fn check_writable(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
-    let outputs: Vec<&Path> = outputs.iter().copied().filter(|path| !is_standard(path)).collect();
+///
+/// # Errors
+/// The first such output, with the reason.
+pub fn check_writable(outputs: &[&Path], inputs: &[&Path]) -> Result<(), ExportError> {
     for (index, path) in outputs.iter().enumerate() {
-        let refuse = |reason: String| Err(Failure::Write { path: path.to_path_buf(), reason });
+        let refuse = |reason: String| Err(ExportError::Write { path: path.to_path_buf(), reason });
         if let Some(other) = outputs[..index].iter().find(|other| file::is_same_place(other, path)) {
             return refuse(format!("it is the same file as {}, another output", other.display()));
         }
-        if let Some(input) = inputs.iter().find(|input| !is_standard(input) && file::is_same_place(input, path)) {
+        if let Some(input) = inputs.iter().find(|input| file::is_same_place(input, path)) {
             return refuse(format!("it is the same file as {}, which is read", input.display()));
         }
         if let Err(error) = file::check_writable(path) {
@@ -159,6 +156,11 @@ fn normal_picture(buffers: &GBuffer) -> DynamicImage {
         true => buffers.normal[i].map(|n| ((n * 0.5 + 0.5) * 255.0).round() as u8),
         false => [0; 3],
     })
+}
+
+/// The id of the visible node of each pixel, 0 for background.
+fn node_ids(buffers: &GBuffer, flat: &FlatScene) -> Vec<u64> {
+    (0..buffers.depth.len()).map(|i| node_id(buffers, flat, i)).collect()
 }
 
 /// The id of the visible node of a pixel, 0 for background.

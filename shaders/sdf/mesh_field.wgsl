@@ -1,0 +1,103 @@
+// Distance bricks of a model, see `src/bricks` for their texels. `src/field/eval/brick_field.rs` is the
+// counterpart and explains the payload rows from `data` on.
+
+const CELL_VOXELS: f32 = 14.0;
+const BRICK_VOXELS: f32 = 7.0;
+const BRICK_TEXELS: u32 = 32u;
+// Steps of a sample in a voxel, and the greatest distance that samples hold, in voxels.
+const SAMPLE_STEPS: f32 = 32.0;
+const SAMPLE_REACH: f32 = 3.96875;
+// Places of cells without entries: inside, and one more outside.
+const CELL_INSIDE: u32 = 0xfffffffeu;
+const LEVEL_ROWS: u32 = 3u;
+
+fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
+    let head = scene_row(data + 1u);
+    let levels = u32(head.x);
+    let finest = mesh_field_level(p, data + 2u);
+    var best = abs(finest) * (1.0 / head.y);
+    var reached = abs(finest) >= scene_row(data + 4u).z;
+    for (var level = 1u; level < levels; level += 1u) {
+        if !reached {
+            break;
+        }
+        let row = data + 2u + LEVEL_ROWS * level;
+        let limits = scene_row(row + 2u);
+        let value = abs(mesh_field_level(p, row));
+        best = max(best, value - limits.y);
+        reached = value >= limits.z;
+    }
+    return select(best, -best, finest < 0.0);
+}
+
+// What the samples of a level say at a point, in meters.
+fn mesh_field_level(p: vec3f, row: u32) -> f32 {
+    let place = scene_row(row);
+    let size = scene_row(row + 1u);
+    let voxel = place.w;
+    let at = (p - place.xyz) * (1.0 / voxel);
+    let within = clamp(at, vec3f(0.0), size.xyz * CELL_VOXELS);
+    let value = mesh_field_within(within, size, u32(scene_row(row + 2u).x)) * voxel;
+    let beside = (at - within) * voxel;
+    let beyond = dot(beside, beside);
+    if beyond > 0.0 {
+        return sqrt(beyond + value * value);
+    }
+    return value;
+}
+
+// The same at a point within the grid, both in voxels, from the origin of the grid.
+fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
+    let counts = vec3u(size.xyz);
+    let cell = min(vec3u(at * (1.0 / CELL_VOXELS)), counts - 1u);
+    let index = cell.x + counts.x * (cell.y + counts.y * cell.z);
+    let first = u32(size.w);
+    let cells = counts.x * counts.y * counts.z;
+    let places = bricks_texel(first + index / 4u);
+    let place = places[index % 4u];
+    if place >= CELL_INSIDE {
+        return select(SAMPLE_REACH, -SAMPLE_REACH, place == CELL_INSIDE);
+    }
+    let inner = at - vec3f(cell) * CELL_VOXELS;
+    let brick = min(vec3u(max(inner, vec3f(0.0)) * (1.0 / BRICK_VOXELS)), vec3u(1u));
+    let number = brick.x + 2u * brick.y + 4u * brick.z;
+    let entries = bricks_texel(first + (cells + 3u) / 4u + 2u * place + number / 4u);
+    let entry = entries[number % 4u];
+    if (entry >> 31u) == 0u {
+        return select(SAMPLE_REACH, -SAMPLE_REACH, (entry & 0x40000000u) != 0u);
+    }
+    let samples = first + first_brick + (entry & 0xffffffu) * BRICK_TEXELS;
+    return mesh_field_samples(inner - vec3f(brick) * BRICK_VOXELS, samples);
+}
+
+// The samples of a brick, in voxels, at a point in voxels from its first one.
+fn mesh_field_samples(at: vec3f, first: u32) -> f32 {
+    let low = min(vec3u(max(at, vec3f(0.0))), vec3u(6u));
+    let row = first + 4u * low.z;
+    let after = low.y + 1u;
+    let steps = mesh_field_trilinear(
+        mesh_field_pair(bricks_texel(row + low.y / 2u), low.y, low.x),
+        mesh_field_pair(bricks_texel(row + after / 2u), after, low.x),
+        mesh_field_pair(bricks_texel(row + 4u + low.y / 2u), low.y, low.x),
+        mesh_field_pair(bricks_texel(row + 4u + after / 2u), after, low.x),
+        at - vec3f(low),
+    );
+    return (steps - 128.0) * (1.0 / SAMPLE_STEPS);
+}
+
+// Two neighbors along x out of two lines of eight samples.
+fn mesh_field_pair(texel: vec4u, y: u32, x: u32) -> vec2f {
+    let line = select(texel.xy, texel.zw, y % 2u == 1u);
+    let next = x + 1u;
+    let low = select(line.x, line.y, x >= 4u) >> (8u * (x % 4u));
+    let high = select(line.x, line.y, next >= 4u) >> (8u * (next % 4u));
+    return vec2f(f32(low & 0xffu), f32(high & 0xffu));
+}
+
+// Values at the corners of a cube, interpolated: pairs along x, at (y, z) = (0, 0), (1, 0), (0, 1), (1, 1).
+fn mesh_field_trilinear(a: vec2f, b: vec2f, c: vec2f, d: vec2f, t: vec3f) -> f32 {
+    let low = vec4f(a.x, b.x, c.x, d.x);
+    let along_x = low + (vec4f(a.y, b.y, c.y, d.y) - low) * t.x;
+    let along_y = along_x.xz + (along_x.yw - along_x.xz) * t.y;
+    return along_y.x + (along_y.y - along_y.x) * t.z;
+}

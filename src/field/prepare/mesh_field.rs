@@ -1,0 +1,36 @@
+//! Models: where their bricks lie, see `eval/brick_field.rs` for the rows.
+
+use super::prepared_params::PreparedParams;
+use isolith_bricks::{BrickLevels, Bricks, SAMPLE_REACH};
+
+/// Rows of a level.
+const LEVEL_ROWS: usize = 3;
+/// The row of a level whose last number is the first texel.
+const FIRST_TEXEL: usize = 1;
+
+/// The rows of bricks whose first texel is 0.
+pub fn mesh_field(levels: &BrickLevels) -> PreparedParams {
+    let marks = levels.all().iter().fold(0, |marks, bricks| (marks * 31 + bricks.mark()) & 0xff_ffff);
+    let mut rows = vec![[levels.all().len() as f64, levels.finest().slope(), f64::from(marks), 0.0]];
+    let mut first = 0;
+    for (level, bricks) in levels.all().iter().enumerate() {
+        let error = if level == 0 { 0.0 } else { levels.error(level) };
+        rows.extend(level_rows(bricks, first, error));
+        first += bricks.texels.len();
+    }
+    PreparedParams::new([0.0; 4], [0.0; 4], rows)
+}
+
+/// There are fewer texels than 32-bit floats count exactly, see `MAX_BRICK_TEXELS`.
+fn level_rows(bricks: &Bricks, first: usize, error: f64) -> [[f64; 4]; LEVEL_ROWS] {
+    let [x, y, z] = bricks.grid.origin.to_array();
+    let [nx, ny, nz] = bricks.grid.cells.map(f64::from);
+    let voxel = bricks.grid.voxel;
+    [[x, y, z, voxel], [nx, ny, nz, first as f64], [f64::from(bricks.first_brick), error, SAMPLE_REACH * voxel, 0.0]]
+}
+
+/// Calls `row` for each row of the payload whose last number is a first texel, counted from that of the finest level.
+pub fn first_texels(levels: &BrickLevels, mut row: impl FnMut(usize)) {
+    // The first two are the bounding sphere and the number of levels.
+    (0..levels.all().len()).for_each(|level| row(2 + LEVEL_ROWS * level + FIRST_TEXEL));
+}
