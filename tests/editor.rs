@@ -1,19 +1,26 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
 mod adding;
+mod arranging;
 mod attachments;
 mod choosing;
+mod clipboard;
+mod commands;
 mod doctor;
+mod dropping;
 mod fields;
 mod first_run;
 mod handles;
+mod inspecting;
 mod instancers;
 mod jobs;
 mod locks;
 mod materials;
 mod modifiers;
+mod monkey;
 mod names;
 mod order;
+mod outliner;
 mod panels;
 mod pawn;
 mod picture;
@@ -21,6 +28,7 @@ mod popups;
 mod preferences;
 mod rendering;
 mod saving;
+mod scale;
 mod timeline;
 mod transforms;
 mod views;
@@ -237,27 +245,6 @@ fn a_color_is_picked_by_dragging_and_by_typing() {
 }
 
 #[test]
-fn renaming_in_the_tree() {
-    let (scene, [_, _, cube, _]) = scene();
-    let mut harness = open(scene);
-    select(&mut harness, "Cube");
-    press(&mut harness, Modifiers::NONE, Key::F2);
-    field(&harness, "New name");
-    harness.event(Event::Text("Xenon".into()));
-    harness.run();
-    press(&mut harness, Modifiers::NONE, Key::Enter);
-    let name = |h: &Harness<'_, Editor>| h.state().document().scene().node(cube).unwrap().name.clone();
-    assert_eq!(name(&harness), "Xenon", "and X in a text field deletes nothing");
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(name(&harness), "Cube");
-    press(&mut harness, Modifiers::NONE, Key::F2);
-    harness.event(Event::Text("Other".into()));
-    harness.run();
-    press(&mut harness, Modifiers::NONE, Key::Escape);
-    assert_eq!(name(&harness), "Cube", "Escape leaves the name");
-}
-
-#[test]
 fn shortcuts_do_not_fire_in_text_fields() {
     let (scene, _) = scene();
     let mut harness = open(scene.clone());
@@ -322,50 +309,6 @@ fn adding_grouping_and_duplicating() {
     assert_eq!(harness.state().document().scene().nodes().len(), 6);
     assert_eq!(harness.state().document().selection().len(), 1, "the copy is selected");
     assert_eq!(undo_all(&mut harness), 4);
-}
-
-#[test]
-fn shift_and_ctrl_select_several_rows() {
-    let (scene, [group, ball, cube, ring]) = scene();
-    let mut harness = open(scene);
-    select(&mut harness, "Ball");
-    let click_with = |harness: &mut Harness<'_, Editor>, name: &str, modifiers: Modifiers| {
-        let pos = row(harness, name);
-        harness.event(Event::PointerMoved(pos));
-        for pressed in [true, false] {
-            let event = Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers };
-            harness.event_modifiers(event, modifiers);
-        }
-        harness.run();
-        harness.run_steps(40);
-        let mut ids = harness.state().document().selection().to_vec();
-        ids.sort();
-        ids
-    };
-    assert_eq!(click_with(&mut harness, "Ball", Modifiers::SHIFT), [ball]);
-    assert_eq!(click_with(&mut harness, "Ring", Modifiers::SHIFT), [ball, cube, ring]);
-    assert_eq!(click_with(&mut harness, "Cube", Modifiers::COMMAND), [ball, ring]);
-    assert_eq!(click_with(&mut harness, "Body", Modifiers::COMMAND), [group, ball, ring]);
-    assert_eq!(click_with(&mut harness, "Cube", Modifiers::NONE), [cube]);
-    assert_eq!(click_with(&mut harness, "Ball", Modifiers::SHIFT), [ball, cube]);
-}
-
-#[test]
-fn rows_are_dragged_into_groups() {
-    let (scene, [group, _, _, ring]) = scene();
-    let mut harness = open(scene.clone());
-    let (from, onto) = (row(&harness, "Ring"), row(&harness, "Body"));
-    pointer(&mut harness, from, true);
-    harness.step();
-    for step in 1..=10 {
-        harness.event(Event::PointerMoved(from + (onto - from) * (step as f32 / 10.0)));
-        harness.step();
-    }
-    pointer(&mut harness, onto, false);
-    harness.run();
-    assert_eq!(harness.state().document().scene().node(ring).unwrap().parent, Some(group));
-    assert_eq!(undo_all(&mut harness), 1);
-    assert_eq!(*harness.state().document().scene(), scene);
 }
 
 #[test]
@@ -451,23 +394,4 @@ fn several_nodes_are_edited_together() {
     let y = |h: &Harness<'_, Editor>, id| h.state().document().scene().node(id).unwrap().transform.translation.y;
     assert_eq!((y(&harness, ball), y(&harness, cube)), (1.5, 1.5));
     assert_eq!(undo_all(&mut harness), 1);
-}
-
-#[test]
-fn the_tree_scrolls_to_what_is_selected_elsewhere() {
-    let mut scene = Scene::new();
-    let material = scene.materials()[0].id;
-    let ids: Vec<NodeId> = (0..200)
-        .map(|i| {
-            let object = Object { shape: ShapeKind::Sphere.default_shape(), material };
-            scene.insert(None, i, Node::new(format!("Ball {i}"), NodeKind::Object(object))).unwrap()
-        })
-        .collect();
-    let mut harness = open(scene);
-    for i in [150, 3, 199] {
-        harness.state_mut().document_mut().select(vec![ids[i]]);
-        harness.run();
-        let y = row(&harness, &format!("Ball {i}")).y;
-        assert!((100.0..780.0).contains(&y), "{y}");
-    }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::change::Change;
-use super::{keys, structure};
+use super::{copying, keys, structure};
 use isolith_scene::{
     Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, ParamPath,
     ParamValue, Scene, SceneError, Timeline, Track, check,
@@ -56,6 +56,15 @@ pub enum Edit {
         ids: Vec<NodeId>,
         /// The instancer; its id and parent are ignored.
         node: Node,
+    },
+    /// Adds the nodes of another scene, as copied, with new ids and with the materials that they use.
+    Merge {
+        /// A group, or `None` for the top. The nodes keep their place in the world as with [`Edit::Move`].
+        parent: Option<NodeId>,
+        /// Counted from 0.
+        position: usize,
+        /// The nodes.
+        from: Arc<Scene>,
     },
     /// Replaces the material of the same id.
     ReplaceMaterial(Material),
@@ -122,6 +131,9 @@ impl Edit {
             }
             Self::Group { ids, group } => enclose(scene, &ids, Node::new("Group", NodeKind::Group(group))),
             Self::Instance { ids, node } => enclose(scene, &ids, node),
+            Self::Merge { parent, position, from } => {
+                copying::merge(scene, &from, parent, position).map(|added| Change { changed: !added.is_empty(), added })
+            }
             Self::ReplaceMaterial(material) => replace_material(scene, material),
             Self::InsertMaterial(material) => {
                 check_material(&material)?;
@@ -171,6 +183,10 @@ impl Edit {
             Self::Duplicate(ids) => format!("Duplicate {}", names(scene, ids)),
             Self::Group { ids, .. } => format!("Group {}", names(scene, ids)),
             Self::Instance { ids, .. } => format!("Instance {}", names(scene, ids)),
+            Self::Merge { from, .. } => {
+                let tops: Vec<NodeId> = from.children(None).map(|node| node.id).collect();
+                format!("Paste {}", names(from, &tops))
+            }
             Self::ReplaceMaterial(material) => format!("Change material {}", material.name),
             Self::InsertMaterial(material) => format!("Add material {}", material.name),
             Self::MoveMaterial { id, .. } => format!("Reorder material {}", material_name(scene, *id)),
@@ -207,6 +223,8 @@ fn replace_label(old: &Node, new: &Node) -> String {
         format!("{} {name}", if new.visible { "Show" } else { "Hide" })
     } else if old.locked != new.locked {
         format!("{} {name}", if new.locked { "Lock" } else { "Unlock" })
+    } else if old.negative != new.negative {
+        format!("{} {name}", if new.negative { "Subtract" } else { "Join" })
     } else if old.transform != new.transform {
         format!("Place {name}")
     } else {

@@ -21,6 +21,7 @@
 //! ```
 
 mod change;
+mod copying;
 mod edit;
 mod history;
 mod keying;
@@ -38,6 +39,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use change::Change;
+pub use copying::extracted;
 pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
@@ -86,7 +88,10 @@ pub enum OverwriteRisk {
 #[derive(Debug)]
 struct Gesture {
     start: State,
+    /// The label of its first edit.
     label: Option<String>,
+    /// A label for all of it.
+    name: Option<String>,
     depth: u32,
 }
 
@@ -232,7 +237,16 @@ impl Document {
     pub fn begin_gesture(&mut self) {
         match &mut self.gesture {
             Some(gesture) => gesture.depth += 1,
-            None => self.gesture = Some(Gesture { start: self.state.clone(), label: None, depth: 1 }),
+            None => self.gesture = Some(Gesture { start: self.state.clone(), label: None, name: None, depth: 1 }),
+        }
+    }
+
+    /// Like [`Document::begin_gesture`], with the label of the step. A gesture within another does not name it.
+    pub fn begin_step(&mut self, label: impl Into<String>) {
+        let is_outermost = self.gesture.is_none();
+        self.begin_gesture();
+        if let Some(gesture) = self.gesture.as_mut().filter(|_| is_outermost) {
+            gesture.name = Some(label.into());
         }
     }
 
@@ -248,7 +262,7 @@ impl Document {
         if gesture.start.scene == self.state.scene {
             self.state.mark = gesture.start.mark;
         } else {
-            self.history.push(label, gesture.start);
+            self.history.push(gesture.name.unwrap_or(label), gesture.start);
         }
     }
 
@@ -285,7 +299,8 @@ impl Document {
 
     /// The label of the step that [`Document::undo`] would undo.
     pub fn undo_label(&self) -> Option<&str> {
-        let open = self.gesture.as_ref().and_then(|g| g.label.as_deref());
+        let open = self.gesture.as_ref().and_then(|g| g.label.as_ref().map(|label| g.name.as_ref().unwrap_or(label)));
+        let open = open.map(String::as_str);
         open.or_else(|| self.undo_labels().next())
     }
 

@@ -94,7 +94,7 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<No
 }
 
 /// The ranges of the nodes' subtrees in table order, without those inside another one.
-fn tops(scene: &Scene, ids: &[NodeId]) -> Result<Vec<Range<usize>>, SceneError> {
+pub(super) fn tops(scene: &Scene, ids: &[NodeId]) -> Result<Vec<Range<usize>>, SceneError> {
     let mut starts = ids
         .iter()
         .map(|id| scene.index_of(*id).ok_or(SceneError::NoNode(*id)))
@@ -144,16 +144,21 @@ fn place_of(nodes: &[Arc<Node>], parent: Option<NodeId>, position: usize) -> usi
 }
 
 /// Finds names that no sibling has, by counting up the number at their end: `Pawn` → `Pawn 2`, `Pawn 7` → `Pawn 8`.
-struct FreeNames {
+pub(super) struct FreeNames {
     taken: HashSet<(Option<NodeId>, String)>,
     /// The last number tried, per parent and name without number.
     last: HashMap<(Option<NodeId>, String), u64>,
 }
 
 impl FreeNames {
-    fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene) -> Self {
         let taken = scene.nodes().iter().map(|n| (n.parent, n.name.clone())).collect();
         Self { taken, last: HashMap::new() }
+    }
+
+    /// The name itself if no child of `parent` has it.
+    pub fn free(&mut self, parent: Option<NodeId>, name: &str) -> String {
+        if self.taken.insert((parent, name.to_owned())) { name.to_owned() } else { self.next(parent, name) }
     }
 
     fn next(&mut self, parent: Option<NodeId>, name: &str) -> String {

@@ -1,13 +1,15 @@
 //! The palette of everything that can be added: at the pointer, by category or by name, favorites first.
 
-use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, Pos2, RichText, ScrollArea, Ui, vec2};
+use egui::{
+    Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, Pos2, RichText, ScrollArea, Sense, Ui, vec2,
+};
 use egui_material_icons::icons::ICON_STAR;
 
 use super::commands::command::Command;
 use super::commands::entries::ICON_ROOM;
 use super::commands::info::Menu;
 use super::state::EditorState;
-use super::{theme, widgets};
+use super::{drag_in, theme, widgets};
 use isolith_scene::ShapeKind;
 
 /// A category of what can be added.
@@ -259,12 +261,16 @@ impl AddPalette {
                     let width = ui.available_width() - 36.0;
                     let button = Button::selectable(index == self.chosen, (RichText::new(ICON_ROOM), &*info.label))
                         .min_size(vec2(width, 26.0))
+                        .sense(Sense::click_and_drag())
                         .shortcut_text("");
                     let response = ui.add_enabled(command.is_enabled(state), button);
                     info.paint_icon(ui, response.rect, true, None);
                     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("New {}", info.label)));
                     if index == self.chosen && moved {
                         response.scroll_to_me(None);
+                    }
+                    if drag_in::begin(state, &response, *command) {
+                        self.open = false;
                     }
                     if response.on_hover_text(&info.help).clicked() {
                         run = Some(*command);

@@ -6,15 +6,19 @@ use std::time::{Duration, Instant};
 
 use egui::Context;
 
-use super::dialogs::{Next, PathField, Purpose, Question, SystemAnswer, SystemDialog, with_ending};
+use super::dialogs::{ENDINGS, Next, PathField, Purpose, Question, SystemAnswer, SystemDialog, with_ending};
 use super::intent::Intent;
 use super::messages::Message;
 use super::root::Editor;
 use super::{insertion, portal};
+use isolith_document::Edit;
 use isolith_scene::{MeshNode, Node, NodeKind};
 
 /// An artist cannot cancel a dialog faster than this: a quicker cancel means that no dialog opened.
 const NO_DIALOG: Duration = Duration::from_millis(600);
+
+/// Why a mesh cannot be added yet.
+const SAVE_FIRST: &str = "Save the scene first: mesh files are named relative to the scene's folder.";
 
 impl Editor {
     /// Asks for a path to save to, then continues with `then`.
@@ -22,10 +26,19 @@ impl Editor {
         self.choose(Purpose::Save(then), ctx);
     }
 
+    /// Adds a mesh file, unless the scene has no file that it could be named from.
+    pub(super) fn add_mesh_of_saved(&mut self, path: &Path) {
+        if self.state.session.document.path().is_none() {
+            self.report(Message::info(SAVE_FIRST));
+        } else {
+            self.add_mesh(path);
+        }
+    }
+
     /// Asks for a mesh file and adds it.
     pub fn choose_mesh(&mut self, ctx: &Context) {
         if self.state.session.document.path().is_none() {
-            self.report(Message::info("Save the scene first: mesh files are named relative to the scene's folder."));
+            self.report(Message::info(SAVE_FIRST));
         } else {
             self.choose(Purpose::Mesh, ctx);
         }
@@ -60,10 +73,10 @@ impl Editor {
     fn system_dialog(&self, purpose: &Purpose) -> rfd::FileDialog {
         let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
         dialog = match purpose {
-            Purpose::Mesh => dialog.add_filter("glTF", &["gltf", "glb"]),
+            Purpose::Mesh | Purpose::Relink(_) => dialog.add_filter("glTF", &["gltf", "glb"]),
             Purpose::Attach(wanted) => dialog.add_filter("Files that can be used", wanted.instead_of.endings()),
             Purpose::ExportKeys | Purpose::ImportKeys => dialog.add_filter("Keymap", &["json"]),
-            Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &["json"]),
+            Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &ENDINGS),
         };
         let path = self.state.session.document.path();
         if let Some(folder) = path.and_then(Path::parent).filter(|f| f.is_absolute()) {
@@ -94,6 +107,10 @@ impl Editor {
         if let Some(wanted) = self.state.session.wanted_file.take() {
             self.state.session.finish();
             self.choose(Purpose::Attach(wanted), ctx);
+        }
+        if let Some(old) = self.state.session.wanted_mesh.take() {
+            self.state.session.finish();
+            self.choose(Purpose::Relink(old), ctx);
         }
         let Some(dialog) = &self.dialogs.system else { return };
         let answer = match dialog.answer.try_recv() {
@@ -138,6 +155,7 @@ impl Editor {
                 }
             }
             Purpose::Mesh => self.add_mesh(path),
+            Purpose::Relink(old) => self.relink(&old, path),
             Purpose::Attach(wanted) => self.state.files.read(self.state.derived.jobs(), wanted, path),
             Purpose::ExportKeys => self.export_keys(&with_ending(path)),
             Purpose::ImportKeys => self.import_keys(path),
@@ -154,21 +172,42 @@ impl Editor {
     }
 
     fn add_mesh(&mut self, path: &Path) {
+        let Some(relative) = self.named_from_scene(path) else { return };
+        let name = path.file_stem().map_or_else(|| "Mesh".into(), |s| s.to_string_lossy().into_owned());
+        insertion::node(&mut self.state, Node::new(name, NodeKind::Mesh(MeshNode::new(relative))));
+    }
+
+    /// Gives all meshes of a file another file.
+    fn relink(&mut self, old: &str, path: &Path) {
+        let Some(relative) = self.named_from_scene(path) else { return };
+        let scene = self.state.session.document.snapshot();
+        self.state.session.document.begin_step(format!("Relink {old}"));
+        for node in scene.nodes() {
+            if let NodeKind::Mesh(mesh) = &node.kind
+                && mesh.path == old
+            {
+                let mesh = MeshNode { path: relative.clone(), ..mesh.clone() };
+                self.state.session.apply(Edit::Replace(Node { kind: NodeKind::Mesh(mesh), ..Node::clone(node) }));
+            }
+        }
+        self.state.session.document.end_gesture();
+    }
+
+    /// The path of a file as scenes name it: from their folder, with slashes. Reports a file that is elsewhere.
+    fn named_from_scene(&mut self, path: &Path) -> Option<String> {
         let folder =
             self.state.session.document.path().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
         let relative = path.strip_prefix(&folder).ok().filter(|_| path.is_absolute()).unwrap_or(path);
         if relative.is_absolute() {
             let text = "Only files in the scene's folder or below it can be used. Copy the mesh there first.";
             self.report(Message::error(text));
-            return;
+            return None;
         }
         let parts: Vec<_> = relative.iter().map(|p| p.to_string_lossy()).collect();
-        let name = relative.file_stem().map_or_else(|| "Mesh".into(), |s| s.to_string_lossy().into_owned());
-        let mesh = MeshNode::new(parts.join("/"));
-        insertion::node(&mut self.state, Node::new(name, NodeKind::Mesh(mesh)));
+        Some(parts.join("/"))
     }
 }
 
 fn suggested_name(path: Option<&Path>) -> String {
-    path.and_then(Path::file_name).map_or_else(|| "scene.json".into(), |n| n.to_string_lossy().into_owned())
+    path.and_then(Path::file_name).map_or_else(|| format!("scene.{}", ENDINGS[0]), |n| n.to_string_lossy().into_owned())
 }

@@ -31,6 +31,8 @@ pub enum Purpose {
     Save(Option<Next>),
     /// Add a mesh.
     Mesh,
+    /// Use another file for all meshes of this one.
+    Relink(String),
     /// Store a file in the scene.
     Attach(WantedFile),
     /// Write the changed keys to a file.
@@ -48,6 +50,7 @@ impl Purpose {
             Self::Mesh => "Add a mesh",
             Self::ExportKeys => "Export the keymap",
             Self::ImportKeys => "Import a keymap",
+            Self::Relink(_) => "Find the model",
             Self::Attach(WantedFile {
                 instead_of: Attached::Heights(_) | Attached::Texture(_) | Attached::Environment(_),
                 ..
@@ -70,7 +73,7 @@ impl Purpose {
             Self::Save(_) | Self::ExportKeys => {}
             // Its reader reports problems in more detail.
             Self::Attach(_) => return None,
-            Self::Open | Self::Mesh | Self::ImportKeys => {
+            Self::Open | Self::Mesh | Self::Relink(_) | Self::ImportKeys => {
                 return (!path.exists()).then(|| format!("There is no file {name}."));
             }
         }
@@ -143,7 +146,14 @@ impl Dialogs {
     }
 }
 
-/// The path to save to for a chosen path: with the scene file extension.
+/// The extensions of scene files; new ones get the first. Both have the same content.
+pub const ENDINGS: [&str; 2] = ["isolith", "json"];
+
+/// The path to save to for a chosen path: with the extension of a scene file, that of an existing one if there is one.
 pub fn with_ending(path: &Path) -> PathBuf {
-    if path.extension().is_none() { path.with_extension("json") } else { path.to_path_buf() }
+    if path.extension().is_some() {
+        return path.to_path_buf();
+    }
+    let [new, other] = ENDINGS.map(|ending| path.with_extension(ending));
+    if other.exists() && !new.exists() { other } else { new }
 }

@@ -19,6 +19,8 @@ pub struct EditSession {
     pub messages: Messages,
     /// The file request of a panel.
     pub wanted_file: Option<WantedFile>,
+    /// A mesh file that a panel wants to replace by another.
+    pub wanted_mesh: Option<String>,
     /// The gesture goes on without a pressed button.
     pub is_held: bool,
     gesture: Option<Id>,
@@ -54,7 +56,14 @@ pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
 impl EditSession {
     /// A session without messages.
     pub fn new(document: Document) -> Self {
-        Self { document, messages: Messages::default(), wanted_file: None, is_held: false, gesture: None }
+        Self {
+            document,
+            messages: Messages::default(),
+            wanted_file: None,
+            wanted_mesh: None,
+            is_held: false,
+            gesture: None,
+        }
     }
 
     /// Applies one change as its own undo step; returns the added nodes. A refusal becomes a message.

@@ -6,10 +6,9 @@ use std::f64::consts::TAU;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 use glam::{DMat3, DVec3};
 
-use super::edit_session::EditSession;
 use super::projection::Projection;
+use super::theme;
 use super::transforms::kinds::{Constraint, TransformKind};
-use super::{selection, theme};
 
 /// Length of the arrows and pick radius, in points.
 const LENGTH: f32 = 78.0;
@@ -26,18 +25,6 @@ const CORNERS: usize = 64;
 const OUTER: f32 = 1.18;
 
 const SHADE: Color32 = Color32::from_black_alpha(90);
-
-/// The mean of the selected nodes' origins in the world; `None` if no node can move.
-pub fn pivot(session: &EditSession) -> Option<DVec3> {
-    let scene = session.document.scene();
-    let ids: Vec<_> =
-        selection::roots(session).into_iter().filter(|id| selection::holder_of_lock(scene, *id).is_none()).collect();
-    if ids.is_empty() {
-        return None;
-    }
-    let sum: DVec3 = ids.iter().map(|id| scene.world_from_local(*id).translation).sum();
-    Some(sum / ids.len() as f64)
-}
 
 /// The handles on the screen, in points.
 pub struct Gizmo {

@@ -14,7 +14,7 @@ use isolith_scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene,
 pub fn shape(state: &mut EditorState, kind: ShapeKind) {
     let at = state.view.add_at.take();
     let placing = placement::placing(state, at);
-    let shape = placement::sized(state, kind.default_shape(), placing.point);
+    let shape = placement::sized(state, placement::remembered(state, kind), placing.point);
     let position = placement::position(state, &shape.bounds(), &placing);
     state.session.document.begin_gesture();
     let material = material(state);

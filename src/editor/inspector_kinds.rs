@@ -58,6 +58,10 @@ pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
                 }
             });
         }
+        let choose = ui.button("Choose a file…").on_hover_text("Another file for all meshes that use this one");
+        if choose.clicked() && !current.is_empty() {
+            edit.session().wanted_mesh = Some(mesh.path.clone());
+        }
         let help = "The animation clip that poses the model, by its name or its number; empty for the rest pose";
         let clip = |n: &Node| if let NodeKind::Mesh(m) = &n.kind { Some(m.clip.clone()) } else { None };
         let (current, hint) = if edit.common(clip).is_some() { (&*mesh.clip, "at rest") } else { ("", MIXED) };

@@ -20,13 +20,17 @@
 //! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
 //! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
 //! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
-//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal`, `viewport_surface` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
 //! | `preferences_window`, `preferences_view`, `key_editor` | the window of the preferences, with the list of all keys |
 //! | `palette`, `theme`, `appearance`, `units` | colors by role, style, what the preferences say about both, units |
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
+//! | `clipboard`, `arrange`, `arrangement` | copy and paste between scenes; aligning, distributing, origins |
+//! | `ghosts`, `hover` | lines on selected nodes that are cut away or hidden; the node under the pointer |
+//! | `drag_in`, `dropped_files` | what is dragged into the picture, and files dropped on the window |
+//! | `history_list` | all steps of undo |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `camera_view` | looking through a camera, its frame; bookmarks of views |
 //! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
@@ -46,12 +50,15 @@
 
 mod add_palette;
 mod appearance;
+mod arrange;
+mod arrangement;
 mod below_list;
 mod bounds;
 mod camera_view;
 mod changelog;
 mod choice_walk;
 mod choosing;
+mod clipboard;
 mod color_picker;
 mod command_palette;
 mod commands;
@@ -65,6 +72,8 @@ mod doctor_view;
 mod document_jobs;
 mod documents;
 mod dope_sheet;
+mod drag_in;
+mod dropped_files;
 mod edit_session;
 mod expression;
 mod file_jobs;
@@ -72,11 +81,14 @@ mod file_watch;
 mod first_run;
 mod fly;
 mod framing;
+mod ghosts;
 mod gizmo;
 mod grid_labels;
 mod handles;
 mod help;
 mod help_pages;
+mod history_list;
+mod hover;
 mod icons;
 mod input_order;
 mod insertion;
@@ -111,6 +123,8 @@ mod navigation;
 mod node_picker;
 mod numbers;
 mod outliner;
+mod outliner_drop;
+mod outliner_filter;
 mod overlay;
 mod palette;
 mod panel;
@@ -152,6 +166,7 @@ mod viewport;
 mod viewport_click;
 mod viewport_drag;
 mod viewport_modal;
+mod viewport_surface;
 mod welcome;
 mod widgets;
 

@@ -2,8 +2,9 @@
 
 use std::cell::RefCell;
 
-use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
+use egui::{Context, DragValue, Event, Id, Key, Response, RichText, Ui, vec2};
 
+use super::steps::rounded;
 use super::theme;
 use super::theme::MIXED;
 use super::units::{FieldUnit, LengthUnit};
@@ -108,10 +109,11 @@ fn prefixed_number(
         refuse(ui, response.id, refusal(name, &text, field, unit));
     }
     answer.value = answer.value.map(|value| field.taken(value));
-    if let Some(default) = field.default
-        && wants_reset(ui, &response, default, unit)
-    {
-        answer.value = Some(default);
+    if let Some(value) = from_menu(ui, &response, field, value, unit) {
+        answer.value = Some(field.taken(value));
+    }
+    if let Some(value) = by_wheel(ui, &response, field, value) {
+        answer.value = Some(value);
     }
     if !field.help.is_empty() && !dragged {
         response.on_hover_text(field.help);
@@ -230,18 +232,62 @@ fn paint_axis_mark(ui: &Ui, response: &Response, axis: usize) {
     ui.painter().rect_filled(bar, 1.0, theme::AXES[axis]);
 }
 
-/// Whether the artist resets the value: by Backspace over the field, or by its context menu.
-fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: FieldUnit) -> bool {
-    let mut reset = false;
+/// Key of the number that was copied last.
+fn copied() -> Id {
+    Id::unique("number copied last")
+}
+
+/// The value that the artist chooses by the context menu, or by Backspace over the field: the default, or the one that
+/// was copied.
+fn from_menu(ui: &Ui, response: &Response, field: &NumberField<'_>, value: f64, unit: FieldUnit) -> Option<f64> {
+    let mut chosen = None;
     response.context_menu(|ui| {
-        let text = format!("Reset to {} {}", number_text(default / unit.one), unit.sign);
-        if ui.button(text.trim_end()).clicked() {
-            reset = true;
+        if let Some(default) = field.default {
+            let text = format!("Reset to {} {}", number_text(default / unit.one), unit.sign);
+            if ui.button(text.trim_end()).clicked() {
+                chosen = Some(default);
+                ui.close();
+            }
+        }
+        if ui.button("Copy value").clicked() {
+            ui.ctx().copy_text(value.to_string());
+            ui.data_mut(|d| d.insert_temp(copied(), value));
+            ui.close();
+        }
+        let copied = ui.data(|d| d.get_temp::<f64>(copied()));
+        let text = copied.map_or_else(
+            || "Paste value".into(),
+            |v| format!("Paste value {} {}", number_text(v / unit.one), unit.sign),
+        );
+        if ui.add_enabled(copied.is_some(), egui::Button::new(text.trim_end())).clicked() {
+            chosen = copied;
             ui.close();
         }
     });
     let typing = ui.ctx().text_edit_focused();
-    reset || (!typing && response.hovered() && ui.input(|i| i.key_pressed(Key::Backspace)))
+    let resets = !typing && response.hovered() && ui.input(|i| i.key_pressed(Key::Backspace));
+    chosen.or(field.default.filter(|_| resets))
+}
+
+/// The value after turns of the wheel with Ctrl, which egui takes for a zoom; without Ctrl the panel scrolls.
+fn by_wheel(ui: &Ui, response: &Response, field: &NumberField<'_>, value: f64) -> Option<f64> {
+    if !response.hovered() || !response.enabled() {
+        return None;
+    }
+    let (turns, precise) = ui.input(|i| {
+        let turn = |event: &Event| match event {
+            Event::MouseWheel { delta, modifiers, .. } if modifiers.command && delta.y != 0.0 => delta.y.signum(),
+            _ => 0.0,
+        };
+        (i.events.iter().map(turn).sum::<f32>(), i.modifiers.shift)
+    });
+    if turns == 0.0 {
+        return None;
+    }
+    // A round step of about a fiftieth of the value or of the range that is dragged.
+    let step = drag_speed(field.limits.soft, value) * if precise { 1.0 } else { 10.0 };
+    let step = if field.limits.rule == Rule::Whole { 1.0 } else { 10.0_f64.powf(step.log10().round()) };
+    Some(field.taken(rounded(value + f64::from(turns) * step, step)))
 }
 
 #[cfg(test)]

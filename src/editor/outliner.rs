@@ -3,32 +3,29 @@
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 
-use egui::{Color32, Key, Rect, RichText, ScrollArea, TextEdit, Ui, vec2};
-use egui_ltreeview::{
-    Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState,
-};
-use egui_material_icons::MaterialIcon;
+use egui::{Color32, Key, Rangef, Rect, RichText, ScrollArea, TextEdit, Ui, vec2};
+use egui_ltreeview::{Action, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState};
 use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
 use super::commands::command::Command;
 use super::commands::entries::context_entries;
 use super::edit_session::EditSession;
 use super::messages::Message;
+use super::outliner_drop::{RowId, destination, move_rows};
+use super::outliner_filter::{self, KindFilter};
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, Request};
-use super::{icons, instancing, selection, theme, widgets};
+use super::{icons, instancing, theme, widgets};
 use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
-use isolith_scene::{Node, NodeId, NodeKind, Scene};
-
-/// A row of the tree; `None` is the invisible root, the scene itself.
-type RowId = Option<NodeId>;
+use isolith_scene::{Node, NodeId, NodeKind, Operator, Scene};
 
 /// State of the outliner that persists between frames.
 pub struct Outliner {
     tree: TreeViewState<RowId>,
     rename: Option<Rename>,
     search: String,
+    kind: KindFilter,
     /// The last selection seen; a new one scrolls into view and opens its parents.
     seen: Vec<NodeId>,
     /// The area below the last row.
@@ -41,6 +38,7 @@ impl Default for Outliner {
             tree: TreeViewState::default(),
             rename: None,
             search: String::new(),
+            kind: KindFilter::All,
             seen: Vec::new(),
             empty_room: Rect::NOTHING,
         }
@@ -59,6 +57,7 @@ enum RowRequest {
     EndRename,
     Visible(egui::Id, NodeId),
     Locked(egui::Id, NodeId),
+    Operator(egui::Id, NodeId, Operator),
     Select(Vec<NodeId>),
     Run(Command),
 }
@@ -124,6 +123,10 @@ impl Outliner {
             let top = ui.cursor().min;
             let rows = Rows {
                 scene: &scene,
+                top: top.y,
+                in_view: ui.clip_rect().y_range().expand(theme::ROW_HEIGHT),
+                is_dragging: ui.input(|i| i.pointer.any_down()),
+                selected: session.document.selection().iter().copied().collect(),
                 shares: instancing::all_shares(&scene),
                 shown: shown.as_ref(),
                 reveal,
@@ -150,7 +153,7 @@ impl Outliner {
             let clear = if self.search.is_empty() { 0.0 } else { 26.0 };
             let field = TextEdit::singleline(&mut self.search)
                 .hint_text("Search…")
-                .desired_width(ui.available_width() - clear)
+                .desired_width(ui.available_width() - clear - 26.0)
                 .margin(egui::Margin::symmetric(8, 4));
             let response = ui.add(field);
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Search"));
@@ -160,6 +163,7 @@ impl Outliner {
             if clear > 0.0 && widgets::icon_button(ui, ICON_CLOSE, "Clear the search", theme::WEAK).clicked() {
                 self.search.clear();
             }
+            outliner_filter::button(ui, &mut self.kind);
         });
         ui.add_space(2.0);
     }
@@ -185,14 +189,15 @@ impl Outliner {
         selection.last().copied()
     }
 
-    /// The nodes whose name contains the search text, with their ancestors; `None` for all.
+    /// The nodes of the chosen kind whose name contains the search text, with their ancestors; `None` for all.
     fn found(&self, scene: &Scene) -> Option<HashSet<NodeId>> {
         let wanted = self.search.trim().to_lowercase();
-        if wanted.is_empty() {
+        if wanted.is_empty() && self.kind == KindFilter::All {
             return None;
         }
         let mut found = HashSet::new();
-        for node in scene.nodes().iter().filter(|n| n.name.to_lowercase().contains(&wanted)) {
+        let fits = |node: &Node| self.kind.takes(node) && node.name.to_lowercase().contains(&wanted);
+        for node in scene.nodes().iter().filter(|node| fits(node)) {
             let mut at = Some(node.id);
             while let Some(id) = at.filter(|id| found.insert(*id)) {
                 at = scene.node(id).and_then(|n| n.parent);
@@ -252,18 +257,16 @@ impl Outliner {
                 RowRequest::EndRename => self.rename = None,
                 RowRequest::Visible(widget, id) => session.change(widget, &[id], |n| n.visible = !n.visible),
                 RowRequest::Locked(widget, id) => session.change(widget, &[id], |n| n.locked = !n.locked),
+                RowRequest::Operator(widget, id, operator) => session.change(widget, &[id], |n| {
+                    if let NodeKind::Group(group) = &mut n.kind {
+                        group.operator = operator;
+                    }
+                }),
                 RowRequest::Select(ids) => session.document.select(ids),
                 RowRequest::Run(command) => run.push(command),
             }
         }
         run
-    }
-}
-
-/// Moves nodes, unless one of them is locked.
-fn move_rows(session: &mut EditSession, ids: Vec<NodeId>, parent: RowId, position: usize) {
-    if !ids.is_empty() && !selection::refuse_locked(session, &ids, "moved") {
-        session.apply(Edit::Move { ids, parent, position });
     }
 }
 
@@ -288,28 +291,6 @@ fn tree_width(panel: f32, scene: &Scene) -> f32 {
     panel.max(deepest as f32 * INDENT + BESIDE_NAME + NAME)
 }
 
-/// The destination of a drag: nodes, parent and position; `None` if it is not allowed.
-fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<NodeId>, RowId, usize)> {
-    let parent = drag.target;
-    let ids: Vec<NodeId> = drag.source.iter().copied().flatten().collect();
-    let into_itself = |p| ids.iter().any(|id| scene.is_within(p, *id));
-    let is_type = |id: &NodeId| scene.node(*id).is_some_and(|node| node.has_field());
-    let takes_types = parent.and_then(|p| scene.node(p)).is_some_and(|node| instancing::instancer(node).is_some());
-    if ids.is_empty() || parent.is_some_and(into_itself) || (takes_types && !ids.iter().all(is_type)) {
-        return None;
-    }
-    // Positions do not count the moved nodes.
-    let rest: Vec<NodeId> = scene.children(parent).map(|n| n.id).filter(|id| !ids.contains(id)).collect();
-    let index = |row: &RowId| row.and_then(|id| rest.iter().position(|r| *r == id));
-    let position = match &drag.position {
-        DirPosition::First => 0,
-        DirPosition::Last => rest.len(),
-        DirPosition::Before(row) => index(row)?,
-        DirPosition::After(row) => index(row)? + 1,
-    };
-    Some((ids, parent, position))
-}
-
 fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &RefCell<Vec<RowRequest>>) {
     let ids: Vec<NodeId> = rows.iter().copied().flatten().collect();
     if !ids.is_empty() && ids.iter().any(|id| !selection.contains(id)) {
@@ -326,6 +307,12 @@ fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &Re
 /// The input of all rows.
 struct Rows<'a> {
     scene: &'a Scene,
+    /// Where the first row begins, and the part of the tree that is in view.
+    top: f32,
+    in_view: Rangef,
+    /// Rows of the selection are also painted at the pointer.
+    is_dragging: bool,
+    selected: HashSet<NodeId>,
     /// The shares of the types of instancers.
     shares: HashMap<NodeId, f64>,
     shown: Option<&'a HashSet<NodeId>>,
@@ -364,8 +351,11 @@ impl Rows<'_> {
             if self.reveal == Some(node.id) {
                 self.at.set(Some(rows));
             }
+            let y = self.top + rows as f32 * theme::ROW_HEIGHT;
+            let is_shown = self.in_view.contains(y) || (self.is_dragging && self.selected.contains(&node.id));
             rows += 1;
-            let open = self.row(builder, node, inherited, rename);
+            // Rows out of view have a place, but nothing to paint: with ten thousand of them that is most of the time.
+            let open = if is_shown { self.row(builder, node, inherited, rename) } else { builder.node(bare(node)) };
             if node.has_children() {
                 open_groups += 1;
                 if !open {
@@ -388,17 +378,17 @@ impl Rows<'_> {
         hidden_above: bool,
         rename: &mut Option<Rename>,
     ) -> bool {
-        let row = match node.kind {
-            NodeKind::Group(_) | NodeKind::Instancer(_) => NodeBuilder::dir(Some(node.id)),
-            _ => NodeBuilder::leaf(Some(node.id)),
-        };
         let dim = hidden_above || !node.visible;
-        let row = row
-            .activatable(true)
+        let row = bare(node)
             .icon(|ui| {
                 let rect = icons::centered(ui.max_rect(), 14.0);
                 let painter = ui.painter().with_clip_rect(ui.clip_rect());
                 icons::paint_node(&painter, rect, node);
+                if let NodeKind::Group(group) = node.kind
+                    && let Some((widget, operator)) = outliner_filter::operators(ui, node, group.operator)
+                {
+                    self.requests.borrow_mut().push(RowRequest::Operator(widget, node.id, operator));
+                }
             })
             .label_ui(|ui| match rename.as_mut().filter(|r| r.id == node.id) {
                 Some(rename) => self.name_field(ui, rename),
@@ -462,7 +452,7 @@ impl Rows<'_> {
             true => (ICON_VISIBILITY, "Hide", rest),
             false => (ICON_VISIBILITY_OFF, "Show", theme::WARNING),
         };
-        let eye = switch(ui, icon, &format!("{verb} {}", node.name), color);
+        let eye = outliner_filter::switch(ui, icon, &format!("{verb} {}", node.name), color);
         if eye.clicked() {
             self.requests.borrow_mut().push(RowRequest::Visible(eye.id, node.id));
         }
@@ -470,16 +460,15 @@ impl Rows<'_> {
             false => (ICON_LOCK_OPEN, "Lock", if hovered { *rest } else { Color32::TRANSPARENT }),
             true => (ICON_LOCK, "Unlock", *theme::WARNING),
         };
-        let lock = switch(ui, icon, &format!("{verb} {}", node.name), color);
+        let lock = outliner_filter::switch(ui, icon, &format!("{verb} {}", node.name), color);
         if lock.clicked() {
             self.requests.borrow_mut().push(RowRequest::Locked(lock.id, node.id));
         }
     }
 }
 
-fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: impl Into<Color32>) -> egui::Response {
-    let text = icon.rich_text().size(14.0).color(color);
-    let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
-    response
+/// A row without content.
+fn bare<'a>(node: &Node) -> NodeBuilder<'a, RowId> {
+    let row = if node.has_children() { NodeBuilder::dir(Some(node.id)) } else { NodeBuilder::leaf(Some(node.id)) };
+    row.activatable(true)
 }

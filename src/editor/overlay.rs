@@ -33,12 +33,13 @@ pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Proj
         let Some((world_from_local, bounds)) = bounds::oriented(scene, state.derived.library(), id) else { continue };
         let color = if Some(id) == active { *theme::ACCENT } else { theme::ACCENT.gamma_multiply(0.6) };
         let corners = bounds.corners().map(|c| projection.to_screen(world_from_local.transform_point3(c)));
+        paint_box(painter, &corners, Stroke::new(3.0, Color32::from_black_alpha(110)));
         paint_box(painter, &corners, Stroke::new(1.25, color));
     }
 }
 
 /// Paints each corner of a box as three short strokes, which hide little of the picture.
-fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
+pub fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
     const SHARE: f32 = 0.22;
     for (index, corner) in corners.iter().enumerate() {
         for axis in 0..3 {
@@ -147,6 +148,14 @@ impl Compass {
                 painter.circle_stroke(at, Self::BALL + 1.0, Stroke::new(1.5, Color32::WHITE));
             }
         }
+    }
+}
+
+/// Paints the line of a lasso, and its end back to the start.
+pub fn lasso(painter: &Painter, line: &[Pos2]) {
+    painter.add(egui::Shape::line(line.to_vec(), Stroke::new(1.5, theme::ACCENT)));
+    if let (Some(first), Some(last)) = (line.first(), line.last()) {
+        painter.add(egui::Shape::dashed_line(&[*last, *first], Stroke::new(1.0, theme::ACCENT), 4.0, 4.0));
     }
 }
 

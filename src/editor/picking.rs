@@ -58,8 +58,7 @@ fn hide(scene: &mut Scene, id: NodeId) -> bool {
 
 /// The point of the surface that the ray meets first.
 pub fn pick_surface(state: &EditorState, ray: &Ray) -> Option<PickedPoint> {
-    let camera = state.view.navigation.camera();
-    surface(state, state.flat(), ray, RayLimits { near: camera.near, far: camera.far })
+    pick_surface_in(state, state.flat(), ray)
 }
 
 /// The same without some nodes, between two distances.
@@ -69,13 +68,24 @@ pub fn pick_surface_without(
     without: &[NodeId],
     range: [f64; 2],
 ) -> Option<PickedPoint> {
+    let flat = flat_without(state, without)?;
+    surface(state, &flat, ray, RayLimits { near: range[0], far: range[1] })
+}
+
+/// The scene without some nodes, to look for several points in it.
+pub fn flat_without(state: &EditorState, without: &[NodeId]) -> Option<FlatScene> {
     let mut scene = Scene::clone(&state.derived.filled(state.session.document.scene()));
     let unique: HashSet<NodeId> = without.iter().copied().collect();
     for id in unique {
         hide(&mut scene, id);
     }
-    let flat = flatten(&scene, 0.0).ok()?;
-    surface(state, &flat, ray, RayLimits { near: range[0], far: range[1] })
+    flatten(&scene, 0.0).ok()
+}
+
+/// The point of a scene's surface that the ray meets first.
+pub fn pick_surface_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Option<PickedPoint> {
+    let camera = state.view.navigation.camera();
+    surface(state, flat, ray, RayLimits { near: camera.near, far: camera.far })
 }
 
 fn surface(state: &EditorState, flat: &FlatScene, ray: &Ray, limits: RayLimits) -> Option<PickedPoint> {

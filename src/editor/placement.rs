@@ -9,7 +9,7 @@ use super::projection::Projection;
 use super::state::EditorState;
 use super::steps::{finest_step, rounded, rounded_point};
 use isolith_geometry::Aabb;
-use isolith_scene::{NodeKind, Shape};
+use isolith_scene::{NodeKind, Shape, ShapeKind};
 
 /// The part of the view's height that a new shape takes.
 const SHARE: f64 = 0.25;
@@ -60,6 +60,12 @@ pub fn placing(state: &EditorState, at: Option<Pos2>) -> Placing {
     }
     let point = view.under_pointer(projection.pixel(at), projection.size_px());
     Placing { point: rounded_point(point, finest_step(projection.meters_per_point(point))), normal: None }
+}
+
+/// The shape of this kind that was edited last, or the default.
+pub fn remembered(state: &EditorState, kind: ShapeKind) -> Shape {
+    let last = state.last_shapes.iter().find(|shape| shape.kind() == kind);
+    last.cloned().unwrap_or_else(|| kind.default_shape())
 }
 
 /// The shape as large as suits the view at a point: a factor of 1, 2 or 5 times a power of ten.
@@ -132,7 +138,6 @@ fn uncovered(state: &EditorState, bounds: &Aabb, mut position: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::ShapeKind;
 
     #[test]
     fn factors_are_round() {

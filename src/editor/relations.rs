@@ -7,10 +7,11 @@ use super::picking::pick_surface_without;
 use super::selection;
 use super::state::EditorState;
 use super::steps::rounded;
+use super::transforms::kinds::PivotPoint;
 use super::transforms::starts::{SelectionMotion, Starts};
 use isolith_document::Edit;
 use isolith_geometry::Ray;
-use isolith_scene::{Node, NodeId, NodeKind, Scene};
+use isolith_scene::{MaterialId, Node, NodeId, NodeKind, Scene};
 
 /// Selects the groups that hold the selection.
 pub fn select_parents(state: &mut EditorState) {
@@ -51,6 +52,39 @@ pub fn select_similar(state: &mut EditorState) {
         .collect();
     alike.push(active.id);
     state.session.document.select(alike);
+}
+
+/// Selects what has the material of the active node.
+pub fn select_same_material(state: &mut EditorState) {
+    let Some(active) = state.session.selected().last().cloned() else { return };
+    let wanted: Vec<MaterialId> = active.materials().collect();
+    let scene = state.session.document.scene();
+    let mut alike: Vec<NodeId> = scene
+        .nodes()
+        .iter()
+        .filter(|node| node.id != active.id && node.materials().any(|id| wanted.contains(&id)))
+        .filter(|node| selection::holder_of_lock(scene, node.id).is_none())
+        .map(|node| node.id)
+        .collect();
+    alike.push(active.id);
+    state.session.document.select(alike);
+}
+
+/// Duplicates the selection and moves, turns or scales the copies as was done last.
+pub fn duplicate_along(state: &mut EditorState) {
+    let Some(last) = state.view.last_motion else { return };
+    let ids = selection::roots(&state.session);
+    if selection::refuse_locked(&mut state.session, &ids, "moved") {
+        return;
+    }
+    state.session.document.begin_step("Duplicate along the last move");
+    selection::duplicate(&mut state.session);
+    if let Some(mut starts) = Starts::new(&state.session, PivotPoint::Median) {
+        (starts.pivot, starts.is_individual) = (last.pivot, last.is_individual);
+        starts.apply(&mut state.session, egui::Id::unique("duplicate along"), last.motion, &last.axes, 1e-9);
+        state.session.finish();
+    }
+    state.session.document.end_gesture();
 }
 
 fn is_alike(a: &Node, b: &Node) -> bool {
@@ -138,7 +172,7 @@ pub fn drop_on_surface(state: &mut EditorState) {
         return;
     }
     let step = 1e-9 * (1.0 + bounds.min.y.abs());
-    if let Some(starts) = Starts::new(&state.session) {
+    if let Some(starts) = Starts::new(&state.session, PivotPoint::Median) {
         let motion = SelectionMotion::Offset(DVec3::NEG_Y * rounded(way, step));
         starts.apply(&mut state.session, egui::Id::unique("drop on surface"), motion, &DMat3::IDENTITY, step);
         state.session.finish();

@@ -26,7 +26,7 @@ use super::state::{EditorState, Example, Request};
 use super::tour::Tour;
 use super::view_state::{Picture, ViewSettings};
 use super::welcome::Welcome;
-use super::{below_list, input_order, numbers, panels, theme, widgets};
+use super::{below_list, drag_in, history_list, input_order, numbers, panels, theme, widgets};
 use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
@@ -158,7 +158,7 @@ impl Editor {
         self.poll_recovery();
         self.poll_dialogs(&ctx);
         self.guard_closing(&ctx);
-        self.open_dropped(&ctx);
+        self.take_dropped_files(&ctx);
         if self.state.session.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
             self.state.session.cancel();
         }
@@ -213,7 +213,12 @@ impl Editor {
             self.run(command, ctx);
             self.state.view.add_at = None;
         }
+        if let Some(command) = drag_in::follow(&mut self.state, ctx) {
+            self.run(command, ctx);
+            self.state.view.add_at = None;
+        }
         below_list::show(&mut self.state, ctx);
+        history_list::show(&mut self.state, ctx);
         let corner = self.state.view.rect;
         self.state.session.messages.show_toasts(ctx, corner);
     }
@@ -377,13 +382,6 @@ impl Editor {
         if self.wants_view && !self.state.derived.is_preparing() {
             self.wants_view = false;
             self.state.show_as_saved();
-        }
-    }
-
-    fn open_dropped(&mut self, ctx: &Context) {
-        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped.filter(|_| !self.has_dialog()) {
-            self.intend(Intent::Open(path), ctx);
         }
     }
 

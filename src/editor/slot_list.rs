@@ -1,8 +1,10 @@
 //! A list of a node whose entries have a kind with parameters, such as its modifiers: buttons to add, reorder, switch
 //! off and remove, and a row for each parameter, generated from the table of kinds.
 
-use egui::{Align, Layout, RichText, Ui};
-use egui_material_icons::icons::{ICON_ADD, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_DELETE};
+use egui::{Align, Button, Id, Key, Layout, Popup, PopupCloseBehavior, RichText, Ui, vec2};
+use egui_material_icons::icons::{
+    ICON_ADD, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CHEVRON_RIGHT, ICON_DELETE, ICON_EXPAND_MORE,
+};
 
 use super::multi_edit::MultiEdit;
 use super::{inspector_params, theme, widgets};
@@ -56,7 +58,9 @@ pub fn show<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
             Some(kinds) => {
                 for (index, kind) in kinds.iter().enumerate() {
                     ui.push_id(index, |ui| {
-                        header::<S>(ui, edit, index, *kind, kinds.len());
+                        if !header::<S>(ui, edit, index, *kind, kinds.len()) {
+                            return;
+                        }
                         for row in S::ROWS.iter().copied().chain(S::params(*kind).iter().map(|param| param.name)) {
                             inspector_params::row(ui, edit, S::part(index), row);
                         }
@@ -73,10 +77,17 @@ pub fn show<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     });
 }
 
-/// Name, with the switch where there is one, and buttons to move and remove.
-fn header<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>, index: usize, kind: S::Kind, count: usize) {
+/// Name, with the switch where there is one, and buttons to collapse, move and remove. Returns whether it is open.
+fn header<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>, index: usize, kind: S::Kind, count: usize) -> bool {
+    let key = ui.scope_id().with("collapsed");
+    let mut is_open = !ui.data(|d| d.get_temp::<bool>(key)).unwrap_or(false);
     ui.horizontal(|ui| {
         let [label, help] = S::texts(kind);
+        let (icon, verb) = if is_open { (ICON_EXPAND_MORE, "Collapse") } else { (ICON_CHEVRON_RIGHT, "Open") };
+        if widgets::icon_button(ui, icon, &format!("{verb} {}", label.to_lowercase()), theme::WEAK).clicked() {
+            is_open ^= true;
+            ui.data_mut(|d| d.insert_temp(key, !is_open));
+        }
         let text = RichText::new(label).strong();
         match S::SWITCH {
             Some(name) => switch(ui, edit, (S::part(index), name), text, help),
@@ -99,6 +110,7 @@ fn header<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>, index: usize, kind
             button(ICON_ARROW_UPWARD, "Move up", index > 0, &|list| list.swap(index - 1, index));
         });
     });
+    is_open
 }
 
 fn switch(ui: &mut Ui, edit: &mut MultiEdit<'_>, (part, name): (Part, &str), text: RichText, help: &str) {
@@ -123,21 +135,50 @@ fn add<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         ui.label(RichText::new(text).color(theme::WEAK));
         return;
     }
-    let label = format!("{} Add {name}", ICON_ADD.codepoint);
-    ui.menu_button(label, |ui| {
-        widgets::scrolling(ui, widgets::list_room(&ui.ctx().clone()), |ui| {
-            for kind in S::kinds() {
-                let [label, help] = S::texts(*kind);
-                let button = ui.button(label).on_hover_text(help);
-                if button.clicked() {
-                    edit.change(button.id, |n| {
-                        if let Some(list) = S::list_mut(n) {
-                            list.push(S::with_defaults(*kind));
-                        }
-                    });
-                    ui.close();
+    let opener = ui.button(format!("{} Add {name}", ICON_ADD.codepoint));
+    let popup = Popup::menu(&opener).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    popup.show(|ui| {
+        let chosen = search::<S>(ui, opener.clicked());
+        if let Some((widget, kind)) = chosen {
+            edit.change(widget, |n| {
+                if let Some(list) = S::list_mut(n) {
+                    list.push(S::with_defaults(kind));
                 }
-            }
-        });
+            });
+            ui.close();
+        }
     });
+}
+
+/// The kinds whose name holds the typed words; Enter takes the first of them.
+fn search<S: SlotList>(ui: &mut Ui, is_new: bool) -> Option<(Id, S::Kind)> {
+    let name = S::NAMES[0];
+    let key = ui.scope_id().with("search");
+    let mut text = ui.data(|d| d.get_temp::<String>(key)).unwrap_or_default();
+    if is_new {
+        text.clear();
+    }
+    ui.set_width(200.0);
+    let label = format!("Find a {name}");
+    let field = widgets::search(ui, &mut text, ("Search…", &label), is_new);
+    let wanted = text.to_lowercase();
+    let is_found =
+        |kind: &&S::Kind| wanted.split_whitespace().all(|word| S::texts(**kind)[0].to_lowercase().contains(word));
+    let found: Vec<S::Kind> = S::kinds().iter().filter(is_found).copied().collect();
+    let enters = !wanted.trim().is_empty() && ui.input(|i| i.key_pressed(Key::Enter));
+    let mut chosen = found.first().filter(|_| enters).map(|kind| (field.id, *kind));
+    ui.add_space(2.0);
+    widgets::scrolling(ui, widgets::list_room(&ui.ctx().clone()), |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        for kind in found {
+            let [label, help] = S::texts(kind);
+            let entry = Button::new(label).frame_when_inactive(false).min_size(vec2(ui.available_width(), 24.0));
+            let button = ui.add(entry).on_hover_text(help);
+            if button.clicked() {
+                chosen = Some((button.id, kind));
+            }
+        }
+    });
+    ui.data_mut(|d| d.insert_temp(key, text));
+    chosen
 }

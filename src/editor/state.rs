@@ -15,7 +15,7 @@ use super::units::LengthUnit;
 use super::view_state::{Picture, ViewSettings, ViewState};
 use isolith_document::{Document, Preferences};
 use isolith_field::FlatScene;
-use isolith_scene::{NodeId, Scene};
+use isolith_scene::{NodeId, NodeKind, Scene, Shape};
 use isolith_session::{Notice, NoticeLevel, ReadDocument, SceneSession};
 
 /// An example of the File menu.
@@ -74,6 +74,14 @@ pub struct EditorState {
     pub can_recover: bool,
     /// The node to rename in place.
     pub renaming: Option<NodeId>,
+    /// The shapes that were edited last, one of each kind: a new one begins with their values.
+    pub last_shapes: Vec<Shape>,
+    /// The revision of the document when they were taken.
+    shapes_seen: u64,
+    /// What was copied or pasted last.
+    pub copied: Option<Arc<Scene>>,
+    /// Whether the list of undo steps is open.
+    pub show_history: bool,
     /// What the user prefers.
     pub preferences: Preferences,
     /// The panels that can be hidden.
@@ -95,6 +103,10 @@ impl Default for EditorState {
             examples: Vec::new(),
             can_recover: false,
             renaming: None,
+            last_shapes: Vec::new(),
+            shapes_seen: 0,
+            copied: None,
+            show_history: false,
             preferences: Preferences::default(),
             panels: Vec::new(),
             requests: Vec::new(),
@@ -142,8 +154,27 @@ impl EditorState {
         self.derived.flat()
     }
 
+    /// Remembers the values of the selected shape after a change.
+    fn remember_shape(&mut self) {
+        let document = &self.session.document;
+        if self.shapes_seen == document.revision() {
+            return;
+        }
+        self.shapes_seen = document.revision();
+        let node = match document.selection() {
+            [only] => document.scene().node(*only),
+            _ => None,
+        };
+        if let Some(NodeKind::Object(object)) = node.map(|node| &node.kind) {
+            let shape = object.shape.clone();
+            self.last_shapes.retain(|last| last.kind() != shape.kind());
+            self.last_shapes.push(shape);
+        }
+    }
+
     /// Updates the derived data and forwards its notices as messages.
     pub fn follow_document(&mut self) {
+        self.remember_shape();
         self.materials.follow(&self.session.document);
         self.derived.follow(&self.session.document);
         for Notice { level, text } in self.derived.take_notices() {

@@ -152,9 +152,9 @@ fn hint_of(state: &EditorState, ctx: &Context) -> String {
         PointerActivity::Flying => {
             "W A S D: move · Q E: down, up · Drag: look around · Wheel: speed · Shift: fast".into()
         }
-        PointerActivity::Moving => "Ctrl: snap · Shift: precise · Esc: cancel".into(),
+        PointerActivity::Moving => "Ctrl: snap · F: onto a surface · Shift: precise · Esc: cancel".into(),
         PointerActivity::Transforming => {
-            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · Shift: precise · \
+            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · F: onto a surface · Shift: precise · \
              Click or Enter: done · Esc: cancel"
                 .into()
         }
@@ -162,6 +162,7 @@ fn hint_of(state: &EditorState, ctx: &Context) -> String {
             "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
         }
         PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Lassoing => "Draw a line around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Boxing => "Drag a box around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),

@@ -10,7 +10,7 @@ use super::commands::info::{Icon, Menu};
 use super::intent::Intent;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry, Request};
-use super::{icons, theme, widgets};
+use super::{drag_in, icons, theme, widgets};
 use isolith_scene::Operator;
 
 /// The panel of the toolbar.
@@ -36,10 +36,11 @@ impl Panel for Toolbar {
 }
 
 /// Submenus of View.
-const SUBMENUS: [(&str, Menu); 4] = [
+const SUBMENUS: [(&str, Menu); 5] = [
     ("Bookmarks", Menu::Bookmarks),
     ("Transform", Menu::Tool),
     ("Orientation", Menu::Orientation),
+    ("Pivot", Menu::Pivot),
     ("Keymap", Menu::Keymap),
 ];
 
@@ -65,7 +66,9 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
         buttons(state, ui, theme::TEXT, &[Command::Undo, Command::Redo], &mut chosen);
         divider(ui);
         for command in favorites(state) {
-            if favorite_button(ui, command).clicked() {
+            let button = favorite_button(ui, command);
+            drag_in::begin(state, &button, command);
+            if button.clicked() {
                 chosen = Some(command);
             }
         }
@@ -105,8 +108,14 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::Edit {
         ui.separator();
-        let presets = ui.menu_button("Instancer presets", |ui| menu_entries(ui, state, Menu::Presets));
-        *chosen = presets.inner.flatten().or(*chosen);
+        for (name, menu) in [
+            ("Paste only", Menu::PastePart),
+            ("Align and distribute", Menu::Arrange),
+            ("Instancer presets", Menu::Presets),
+        ] {
+            let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
+            *chosen = inner.flatten().or(*chosen);
+        }
     }
     if menu == Menu::View {
         ui.separator();
@@ -173,7 +182,8 @@ fn with_step(tooltip: String, step: Option<&str>) -> String {
 /// A button that adds a favorite.
 fn favorite_button(ui: &mut Ui, command: Command) -> Response {
     let info = command.info();
-    let response = square(ui, true, Button::new(""), &format!("Add {}", info.label.to_lowercase()));
+    let button = Button::new("").sense(egui::Sense::click_and_drag());
+    let response = square(ui, true, button, &format!("Add {}", info.label.to_lowercase()));
     let rect = icons::centered(response.rect, 17.0);
     let hovered = response.hovered();
     match info.icon {
@@ -187,7 +197,7 @@ fn favorite_button(ui: &mut Ui, command: Command) -> Response {
         }
         None => {}
     }
-    response.on_hover_text(format!("Add: {}\n{}", info.label, info.help))
+    response.on_hover_text(format!("Add: {}\n{}\nDrag it into the viewport to choose the place", info.label, info.help))
 }
 
 /// Maximum number of characters of a file's name in a menu.

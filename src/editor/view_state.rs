@@ -3,8 +3,10 @@
 use egui::{Event, Pos2, Rect, TextureId, vec2};
 
 use super::choice_walk::{BelowList, Walk};
+use super::commands::command::Command;
 use super::navigation::Navigation;
-use super::transforms::kinds::{Orientation, Tool, TransformKind};
+use super::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
+use super::transforms::starts::LastMotion;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
@@ -106,6 +108,8 @@ pub enum PointerActivity {
     Shaping,
     /// Drags a box around what is to be selected.
     Boxing,
+    /// Draws a line around what is to be selected.
+    Lassoing,
 }
 
 /// The view of the document.
@@ -134,10 +138,16 @@ pub struct ViewState {
     pub tool: Tool,
     /// Whose axes it follows.
     pub orientation: Orientation,
+    /// The point around which it turns and scales.
+    pub pivot: PivotPoint,
+    /// The last transform, to be repeated.
+    pub last_motion: Option<LastMotion>,
     /// The transform that follows the pointer and takes all keys.
     pub transforming: Option<TransformKind>,
     /// Where in the picture the next node is added; `None` for the view's target.
     pub add_at: Option<Pos2>,
+    /// What is dragged from a palette into the picture.
+    pub dragging_in: Option<Command>,
     /// The group in which clicks select; `None` for the whole scene.
     pub entered: Option<NodeId>,
     /// The clicks at one place so far.
@@ -148,6 +158,8 @@ pub struct ViewState {
     pub isolated: Vec<NodeId>,
     /// The next drag selects by a box.
     pub wants_box: bool,
+    /// The next drag selects by a lasso.
+    pub wants_lasso: bool,
     /// Where the context menu was opened.
     pub menu_at: Option<Pos2>,
     /// The keys and texts of this frame that belong to it.
@@ -179,13 +191,17 @@ impl Default for ViewState {
             show_outline: true,
             tool: Tool::Transform(TransformKind::Move),
             orientation: Orientation::World,
+            pivot: PivotPoint::Median,
+            last_motion: None,
             transforming: None,
             add_at: None,
+            dragging_in: None,
             entered: None,
             walk: None,
             below: None,
             isolated: Vec::new(),
             wants_box: false,
+            wants_lasso: false,
             menu_at: None,
             modal_events: Vec::new(),
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),

@@ -5,9 +5,11 @@ use glam::{DVec2, DVec3};
 
 use super::commands::entries::viewport_entries;
 use super::fly::{self, FlySpeed};
+use super::ghosts::Ghosts;
 use super::handles::handle_paint;
 use super::handles::value_drag::Pace;
 use super::handles::value_handle::{HandleSet, HandleTarget};
+use super::hover::Hover;
 use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
 use super::projection::Projection;
@@ -15,9 +17,10 @@ use super::state::{EditorState, Request};
 use super::transforms::transform_bar;
 use super::transforms::transform_drag::Following;
 use super::view_state::PointerActivity;
-use super::viewport_click::{click, prepare_menu, select_in_box, take_dropped_material};
+use super::viewport_click::{click, prepare_menu, select_in_box, select_in_lasso, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
+use super::viewport_surface::SurfaceUnderPointer;
 use super::{camera_view, grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
@@ -26,6 +29,9 @@ use isolith_field::debug_view::ViewMode;
 pub struct Viewport {
     dragging: Option<Dragging>,
     modal: ModalTransform,
+    surface: SurfaceUnderPointer,
+    ghosts: Ghosts,
+    hover: Hover,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
     fly_speed: FlySpeed,
@@ -85,7 +91,9 @@ impl Viewport {
             Some(Dragging::Transform(_)) => PointerActivity::Moving,
             Some(Dragging::Shape(_)) => PointerActivity::Shaping,
             Some(Dragging::Box(_)) => PointerActivity::Boxing,
+            Some(Dragging::Lasso(_)) => PointerActivity::Lassoing,
             None if state.view.wants_box => PointerActivity::Boxing,
+            None if state.view.wants_lasso => PointerActivity::Lassoing,
             None if response.hovered() => over_handle().unwrap_or(PointerActivity::Hovering),
             None => PointerActivity::Away,
         }
@@ -97,6 +105,7 @@ impl Viewport {
         if response.drag_started() && !self.modal.takes_pointer() {
             let projection = Projection::new(&state.view, pixels_per_point);
             self.dragging = start_drag(state, ui, response, &projection);
+            self.surface = SurfaceUnderPointer::default();
         }
         if fly::begins(ui, response)
             && matches!(self.dragging, None | Some(Dragging::Orbit))
@@ -107,12 +116,18 @@ impl Viewport {
         let is_flying = matches!(self.dragging, Some(Dragging::Fly));
         self.has_flown = is_flying && !fly::goes_on(ui);
         if !response.dragged() && (!is_flying || self.has_flown) {
-            if let Some(Dragging::Box([from, to])) = self.dragging {
-                let projection = Projection::new(&state.view, pixels_per_point);
-                let adding = ui.input(|i| i.modifiers.shift);
-                select_in_box(state, &projection, Rect::from_two_pos(from, to), adding);
+            let projection = Projection::new(&state.view, pixels_per_point);
+            let adding = ui.input(|i| i.modifiers.shift);
+            match self.dragging.take() {
+                Some(Dragging::Box([from, to])) => {
+                    select_in_box(state, &projection, Rect::from_two_pos(from, to), adding);
+                }
+                Some(Dragging::Lasso(line)) => select_in_lasso(state, &projection, &line, adding),
+                Some(Dragging::Transform(drag)) => {
+                    state.view.last_motion = drag.last_motion().or(state.view.last_motion);
+                }
+                _ => {}
             }
-            self.dragging = None;
         }
         self.follow_drag(state, ui, response);
         self.zoom_by_wheel(state, ui, response);
@@ -171,6 +186,13 @@ impl Viewport {
                     self.dragging = None;
                 }
             }
+            Some(Dragging::Lasso(line)) => {
+                line.extend(response.interact_pointer_pos().filter(|at| line.last() != Some(at)));
+                state.view.wants_lasso = false;
+                if ui.input(|i| i.key_pressed(Key::Escape)) {
+                    self.dragging = None;
+                }
+            }
             Some(Dragging::Transform(_) | Dragging::Shape(_)) => self.follow_change(state, ui, response, &projection),
         }
     }
@@ -190,7 +212,12 @@ impl Viewport {
         let ray = projection.ray(pointer);
         match &mut self.dragging {
             Some(Dragging::Transform(drag)) => {
-                drag.follow(projection, view.rotation, pointer, Following { precise: modifiers.shift, snap });
+                if ui.input(|i| i.key_pressed(Key::F)) {
+                    drag.surface = drag.surface.next();
+                }
+                let surface = self.surface.find(state, projection, pointer, drag);
+                let following = Following { precise: modifiers.shift, snap, surface };
+                drag.follow(projection, state.view.navigation.rotation, pointer, following);
                 drag.apply(&mut state.session, response.id);
             }
             Some(Dragging::Shape(drag)) => {
@@ -269,7 +296,7 @@ impl Viewport {
         handle_paint::announce(ui, &set);
     }
 
-    fn paint(&self, state: &EditorState, ui: &Ui, response: &Response) {
+    fn paint(&mut self, state: &EditorState, ui: &Ui, response: &Response) {
         let rect = state.view.rect;
         let painter = ui.painter_at(rect);
         match state.picture.texture {
@@ -285,12 +312,16 @@ impl Viewport {
         }
         if state.view.show_outline {
             overlay::selection_boxes(state, &painter, &projection);
+            self.ghosts.paint(state, &painter, &projection);
             lattice_overlay::paint(state, &painter, &projection);
         }
         camera_view::paint(state, &painter);
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);
         let pointer = response.hover_pos().filter(|_| response.hovered() || response.dragged());
+        let is_free = matches!(state.view.pointer, PointerActivity::Hovering) && state.view.show_outline;
+        self.hover.look(state, &projection, pointer.filter(|_| is_free));
+        self.hover.paint(state, &painter, &projection);
         self.paint_tools(state, ui, &projection, pointer);
         if state.view.view_mode != ViewMode::Shaded {
             let depth_range = state.depth_range();
@@ -303,6 +334,9 @@ impl Viewport {
         if let Some(Dragging::Box([from, to])) = self.dragging {
             let area = Rect::from_two_pos(from, to);
             painter.rect(area, 0.0, theme::ACCENT.gamma_multiply(0.12), (1.0, theme::ACCENT), egui::StrokeKind::Inside);
+        }
+        if let Some(Dragging::Lasso(line)) = &self.dragging {
+            overlay::lasso(&painter, line);
         }
         let compass = Compass::new(rect, state.view.navigation.rotation);
         compass.paint(&painter, pointer.and_then(|p| compass.side_at(p)));

@@ -89,7 +89,7 @@ fn first_click(state: &mut EditorState, projection: &Projection, pointer: Pos2) 
 }
 
 /// The marker or the node under the pointer.
-fn hit_at(state: &EditorState, projection: &Projection, pointer: Pos2) -> Option<NodeId> {
+pub fn hit_at(state: &EditorState, projection: &Projection, pointer: Pos2) -> Option<NodeId> {
     let markers = overlay::markers(state, projection);
     let marker = markers.iter().find(|m| m.at.distance(pointer) < Marker::GRAB).map(|m| m.id);
     marker.or_else(|| pick_node(state, &projection.ray(pointer)))
@@ -157,13 +157,34 @@ pub fn prepare_menu(state: &mut EditorState, projection: &Projection, pointer: P
 
 /// Selects what has its middle in a box of the screen: children of the entered group, or nodes of the top.
 pub fn select_in_box(state: &mut EditorState, projection: &Projection, area: Rect, adding: bool) {
+    select_where(state, projection, |at| area.contains(at), adding);
+}
+
+/// The same within a line around it.
+pub fn select_in_lasso(state: &mut EditorState, projection: &Projection, line: &[Pos2], adding: bool) {
+    select_where(state, projection, |at| is_around(line, at), adding);
+}
+
+/// Whether a closed line runs around a point: a ray to the right crosses it an odd number of times.
+fn is_around(line: &[Pos2], at: Pos2) -> bool {
+    let mut inside = false;
+    for (index, a) in line.iter().enumerate() {
+        let b = line[(index + 1) % line.len()];
+        if (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+fn select_where(state: &mut EditorState, projection: &Projection, is_chosen: impl Fn(Pos2) -> bool, adding: bool) {
     let scene = state.session.document.scene();
     let middle = |node: &Node| match node.kind {
         NodeKind::Light(_) | NodeKind::Camera(_) => Some(scene.world_from_local(node.id).translation),
         _ => bounds::of_nodes(scene, state.derived.library(), &[node.id]).map(|bounds| bounds.center()),
     };
     let entered = state.view.entered.filter(|id| scene.node(*id).is_some());
-    let is_in = |node: &Node| middle(node).and_then(|p| projection.to_screen(p)).is_some_and(|at| area.contains(at));
+    let is_in = |node: &Node| middle(node).and_then(|p| projection.to_screen(p)).is_some_and(&is_chosen);
     let inside = scene.children(entered).filter(|node| node.visible && !node.locked && is_in(node));
     let mut found: Vec<NodeId> = inside.map(|node| node.id).collect();
     if adding {

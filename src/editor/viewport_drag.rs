@@ -3,13 +3,15 @@
 use egui::{PointerButton, Pos2, Response, Ui};
 use glam::DVec3;
 
-use super::gizmo::{self, Gizmo};
+use super::gizmo::Gizmo;
 use super::handles::value_drag::ValueDrag;
 use super::handles::value_handle::{HandleKey, HandleSet};
 use super::projection::Projection;
 use super::state::EditorState;
 use super::transforms::kinds::{Tool, TransformKind};
+use super::transforms::starts::pivot_of;
 use super::transforms::transform_drag::{TransformDrag, axes_of};
+use super::viewport_surface::with_bounds;
 
 /// The current drag.
 pub enum Dragging {
@@ -27,6 +29,8 @@ pub enum Dragging {
     Shape(Box<ValueDrag>),
     /// Draws a box from here to there; what is in it is selected at the end.
     Box([Pos2; 2]),
+    /// Draws a line around what is selected at the end.
+    Lasso(Vec<Pos2>),
 }
 
 /// The gizmo of the selection.
@@ -34,7 +38,7 @@ pub fn gizmo_of(state: &EditorState, projection: &Projection) -> Option<Gizmo> {
     let Tool::Transform(kind) = state.view.tool else { return None };
     let turn = state.view.navigation.rotation;
     let axes = axes_of(&state.session, state.view.orientation, turn);
-    Gizmo::new(kind, gizmo::pivot(&state.session)?, &axes, turn * DVec3::Z, projection)
+    Gizmo::new(kind, pivot_of(&state.session, state.view.pivot)?, &axes, turn * DVec3::Z, projection)
 }
 
 /// The handle of a shape under the pointer. The middle of the gizmo lies over the handles.
@@ -73,13 +77,17 @@ pub fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection:
     if state.view.wants_box {
         return Some(Dragging::Box([origin; 2]));
     }
+    if state.view.wants_lasso || (modifiers.command && modifiers.alt) {
+        return Some(Dragging::Lasso(vec![origin]));
+    }
     if let Some(shaping) = start_shaping(state, projection, origin).filter(|_| !modifiers.alt) {
         return Some(shaping);
     }
     let handle = gizmo_of(state, projection).and_then(|gizmo| gizmo.handle_at(origin)).filter(|_| !modifiers.alt);
     let transforming = handle.zip(transform_kind(state)).and_then(|(constraint, kind)| {
-        let axes = (state.view.orientation, state.view.navigation.rotation);
-        Some(TransformDrag::begin(&state.session, kind, axes, origin)?.limited(constraint))
+        let axes = (state.view.orientation, state.view.navigation.rotation, state.view.pivot);
+        let drag = TransformDrag::begin(&state.session, kind, axes, origin)?.limited(constraint);
+        Some(with_bounds(state, drag))
     });
     let otherwise = match () {
         () if modifiers.command => Dragging::Box([origin; 2]),

@@ -9,12 +9,14 @@ use super::state::EditorState;
 use super::transforms::kinds::{Constraint, TransformKind};
 use super::transforms::modal::{ModalStep, take_keys};
 use super::transforms::transform_drag::{Following, TransformDrag};
+use super::viewport_surface::{SurfaceUnderPointer, with_bounds};
 use super::{selection, steps, theme};
 
 /// The transform in progress.
 #[derive(Default)]
 pub struct ModalTransform {
     drag: Option<Box<TransformDrag>>,
+    surface: SurfaceUnderPointer,
     /// The click that ended it has not been released: it selects nothing.
     ignoring: bool,
 }
@@ -66,8 +68,11 @@ impl ModalTransform {
                 let modifiers = ui.input(|i| i.modifiers);
                 let view = &state.view.navigation;
                 let snap = if modifiers.command { steps::snap_step(view.distance) } else { 0.0 };
-                drag.follow(&projection, view.rotation, pointer, Following { precise: modifiers.shift, snap });
+                let surface = self.surface.find(state, &projection, pointer, drag);
+                let following = Following { precise: modifiers.shift, snap, surface };
+                drag.follow(&projection, view.rotation, pointer, following);
                 drag.apply(&mut state.session, widget);
+                state.view.last_motion = drag.last_motion().or(state.view.last_motion);
             }
         }
         if step != ModalStep::Going {
@@ -78,8 +83,10 @@ impl ModalTransform {
 
     /// Starts at the pointer; returns whether there is something to transform.
     fn begin(&mut self, state: &mut EditorState, kind: TransformKind, pointer: Pos2) -> bool {
-        let axes = (state.view.orientation, state.view.navigation.rotation);
-        self.drag = TransformDrag::begin(&state.session, kind, axes, pointer).map(Box::new);
+        let axes = (state.view.orientation, state.view.navigation.rotation, state.view.pivot);
+        let drag = TransformDrag::begin(&state.session, kind, axes, pointer);
+        self.drag = drag.map(|drag| Box::new(with_bounds(state, drag)));
+        self.surface = SurfaceUnderPointer::default();
         state.session.is_held = self.drag.is_some();
         if self.drag.is_none() {
             let ids = selection::roots(&state.session);

@@ -142,6 +142,17 @@ impl Node {
         }
     }
 
+    /// Replaces the ids of its materials, for a copy in another scene; `None` keeps an id.
+    pub fn rename_materials(&mut self, new: impl Fn(MaterialId) -> Option<MaterialId>) {
+        let rename = |id: &mut MaterialId| *id = new(*id).unwrap_or(*id);
+        match &mut self.kind {
+            NodeKind::Object(object) => rename(&mut object.material),
+            NodeKind::Mesh(mesh) => mesh.material.iter_mut().for_each(rename),
+            NodeKind::Instancer(instancer) => instancer.palette.iter_mut().for_each(rename),
+            NodeKind::Group(_) | NodeKind::Light(_) | NodeKind::Camera(_) => {}
+        }
+    }
+
     /// Whether other nodes can be its children.
     pub fn has_children(&self) -> bool {
         matches!(self.kind, NodeKind::Group(_) | NodeKind::Instancer(_))

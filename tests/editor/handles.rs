@@ -236,7 +236,8 @@ fn locked_hidden_and_several_nodes_have_no_handles() {
 fn the_spacing_of_a_lattice_follows_the_pointer() {
     let grid = Instancer::grid([3, 1, 3], [1.0; 3]);
     let (mut harness, scene, id) = with(NodeKind::Instancer(Box::new(grid)));
-    assert_eq!(names(&harness), ["Spacing X", "Spacing Z"], "none along an axis with a single layer");
+    let wanted = ["Spacing X", "Spacing Z", "Counts X", "Counts Z"];
+    assert_eq!(names(&harness), wanted, "none along an axis with a single layer");
     press(&mut harness, Modifiers::NONE, Key::Num1);
     let from = handle(&harness, "Spacing X");
     let end = drag(&mut harness, from, vec2(60.0, 0.0), Modifiers::NONE);
@@ -246,6 +247,25 @@ fn the_spacing_of_a_lattice_follows_the_pointer() {
     let Lattice::Grid { spacing, .. } = instancer.lattice else { panic!() };
     assert!(spacing[0] > 1.1 && spacing[1..] == [1.0; 2], "{spacing:?}");
     assert!(handle(&harness, "Spacing X").distance(end) < 1.0, "it stays under the pointer");
+    assert_eq!(undo_all(&mut harness), 1, "one drag is one step");
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn the_count_of_a_lattice_follows_the_pointer_in_whole_copies() {
+    let grid = Instancer::grid([3, 1, 3], [1.0; 3]);
+    let (mut harness, scene, id) = with(NodeKind::Instancer(Box::new(grid)));
+    press(&mut harness, Modifiers::NONE, Key::Num1);
+    let (edge, one) = (handle(&harness, "Counts X"), handle(&harness, "Spacing X"));
+    let end = edge - one;
+    // Two and a half meters from the middle instead of one and a half: five copies.
+    let meter = -end.x / 2.5;
+    drag(&mut harness, edge, vec2(-meter * 1.1, 0.0), Modifiers::NONE);
+    let NodeKind::Instancer(instancer) = harness.state().document().scene().node(id).unwrap().kind.clone() else {
+        panic!()
+    };
+    let Lattice::Grid { counts, .. } = instancer.lattice else { panic!() };
+    assert_eq!(counts, [5, 1, 3]);
     assert_eq!(undo_all(&mut harness), 1, "one drag is one step");
     assert_eq!(*harness.state().document().scene(), scene);
 }

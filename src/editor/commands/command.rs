@@ -1,8 +1,9 @@
 //! The names of the commands, without their conditions and effects.
 
+use crate::arrangement::{BoundsEdge, CopiedPart, OriginPlace};
 use crate::keymap::Keymap;
 use crate::navigation::Side;
-use crate::transforms::kinds::{Orientation, Tool, TransformKind};
+use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_scene::{InstancerPreset, Operator, ShapeKind};
@@ -32,6 +33,24 @@ pub enum Command {
     Undo,
     /// Redo the last undone change.
     Redo,
+    /// Toggle the list of undo steps.
+    ShowHistory,
+    /// Copy the selection to the clipboard.
+    Copy,
+    /// Copy the selection to the clipboard and delete it.
+    Cut,
+    /// Add what the clipboard holds.
+    Paste,
+    /// Give the selection a part of the copied node.
+    PastePart(CopiedPart),
+    /// Align the selection with the active node, along an axis.
+    Align(usize, BoundsEdge),
+    /// Make the gaps between the selected nodes equal, along an axis.
+    Distribute(usize),
+    /// Move the origin of the selected groups.
+    MoveOrigin(OriginPlace),
+    /// Duplicate the selection along the last move.
+    DuplicateAlong,
     /// Rename the active node in the outliner.
     Rename,
     /// Duplicate the selection.
@@ -70,6 +89,10 @@ pub enum Command {
     MeshToField,
     /// Make triangles of the selected fields of models.
     FieldToMesh,
+    /// Select what has the same material.
+    SelectSameMaterial,
+    /// Select by a line that the next drag draws.
+    SelectByLasso,
     /// Select by a box that the next drag draws.
     SelectByBox,
     /// Show the selection alone, or everything again.
@@ -158,6 +181,8 @@ pub enum Command {
     UseTool(Tool),
     /// Switch to these axes.
     UseOrientation(Orientation),
+    /// Switch to this pivot.
+    UsePivot(PivotPoint),
     /// Switch to this keymap.
     UseKeymap(Keymap),
     /// Switch to this shading.

@@ -5,12 +5,13 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CHANGE_HISTORY,
     ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON,
-    ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LOCK,
-    ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO,
-    ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIEW_IN_AR, ICON_VISIBILITY, ICON_VISIBILITY_LOCK,
-    ICON_VISIBILITY_OFF,
+    ICON_HISTORY, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY,
+    ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LASSO_SELECT, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE,
+    ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP,
+    ICON_VIEW_IN_AR, ICON_VISIBILITY, ICON_VISIBILITY_LOCK, ICON_VISIBILITY_OFF,
 };
 
+use super::arrange;
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::instancer_edits::{can_instance, can_take_preset};
@@ -25,12 +26,14 @@ const SHIFT_CTRL: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 pub(super) fn commands() -> Vec<CommandInfo> {
     let mut all = history();
+    all.extend(arrange::clipboard());
     all.extend(structure());
     all.extend(instancers());
     all.extend(roles());
     all.extend(extended_operators());
     let keys = "Sets keys of position, rotation and scale of the selection at the moment that is shown";
     all.push(on_selection(Command::KeyTransform, ICON_KEY, "Insert key", keys).key(NONE, Key::K).group());
+    all.extend(arrange::commands());
     all.extend(showing());
     all
 }
@@ -61,10 +64,14 @@ fn history() -> Vec<CommandInfo> {
             .key(SHIFT_CTRL, Key::Z)
             .key(CTRL, Key::Y)
             .when(|state| state.session.document.redo_label().is_some()),
+        row(Command::ShowHistory, ICON_HISTORY, "History", "The list of all steps of undo; a click goes to one")
+            .key(Modifiers::ALT, Key::Z)
+            .switch(|state, _| state.show_history),
     ]
 }
 
 fn structure() -> Vec<CommandInfo> {
+    let along = "A copy of the selection, moved, turned or scaled as was done last; again for a row or a ring";
     let up = "One place up among its siblings; the order of operands matters";
     vec![
         on_selection(Command::Rename, ICON_EDIT, "Rename", "Changes the name in the outliner")
@@ -73,6 +80,9 @@ fn structure() -> Vec<CommandInfo> {
         on_selection(Command::Duplicate, ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it")
             .key(Modifiers::SHIFT, Key::D)
             .key(CTRL, Key::D),
+        on_selection(Command::DuplicateAlong, ICON_CONTENT_COPY, "Duplicate along the last move", along)
+            .key(Modifiers::SHIFT, Key::R)
+            .when(|state| any(state) && state.view.last_motion.is_some()),
         on_selection(
             Command::Delete,
             ICON_DELETE,
@@ -201,6 +211,12 @@ fn showing() -> Vec<CommandInfo> {
         )
         .key(NONE, Key::CloseBracket),
         on_selection(Command::SelectSimilar, ICON_SELECT_ALL, "Select similar", similar).key(Modifiers::SHIFT, Key::G),
+        on_selection(
+            Command::SelectSameMaterial,
+            ICON_SELECT_ALL,
+            "Select same material",
+            "Selects all with the material of the active node",
+        ),
         row(
             Command::SelectByBox,
             ICON_SELECT,
@@ -208,6 +224,13 @@ fn showing() -> Vec<CommandInfo> {
             "The next drag in the viewport selects what is in its box",
         )
         .key(NONE, Key::B),
+        row(
+            Command::SelectByLasso,
+            ICON_LASSO_SELECT,
+            "Select by a lasso",
+            "The next drag in the viewport draws a line around what is selected",
+        )
+        .key(Modifiers::SHIFT, Key::B),
         CommandInfo::new(Menu::Edit, Command::Isolate, Icon::from(ICON_VISIBILITY_LOCK), "Isolate", alone)
             .key(NONE, Key::Slash)
             .when(|state| any(state) || !state.view.isolated.is_empty()),

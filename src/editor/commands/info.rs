@@ -21,6 +21,10 @@ pub enum Menu {
     Edit,
     /// Ready-made settings of instancers; a submenu of Edit.
     Presets,
+    /// Parts of a copied node; a submenu of Edit.
+    PastePart,
+    /// Aligning and distributing; a submenu of Edit.
+    Arrange,
     /// New nodes.
     Add,
     /// The camera and the picture.
@@ -37,6 +41,8 @@ pub enum Menu {
     Tool,
     /// Axes of the tools; a submenu of View.
     Orientation,
+    /// Pivots of the tools; a submenu of View.
+    Pivot,
     /// Keymaps; a submenu of View.
     Keymap,
     /// What explains the program.
@@ -155,13 +161,10 @@ impl CommandInfo {
 
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
+        use Menu::{Debug, Keymap, Orientation, Pivot, Samples, Shading, Tool};
         match (self.menu, on) {
-            (Menu::Shading | Menu::Debug | Menu::Samples | Menu::Tool | Menu::Orientation | Menu::Keymap, true) => {
-                ICON_RADIO_BUTTON_CHECKED
-            }
-            (Menu::Shading | Menu::Debug | Menu::Samples | Menu::Tool | Menu::Orientation | Menu::Keymap, false) => {
-                ICON_RADIO_BUTTON_UNCHECKED
-            }
+            (Shading | Debug | Samples | Tool | Orientation | Pivot | Keymap, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Shading | Debug | Samples | Tool | Orientation | Pivot | Keymap, false) => ICON_RADIO_BUTTON_UNCHECKED,
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

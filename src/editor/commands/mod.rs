@@ -3,11 +3,12 @@
 //! | file | holds |
 //! |---|---|
 //! | `command` | the names of the commands |
-//! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `tools`, `add`, `view` and `help` |
+//! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `arrange`, `tools`, `add`, `view` and `help` |
 //! | `run` | their effects |
 //! | `entries`, `shortcuts` | commands in menus and by keys |
 
 mod add;
+mod arrange;
 pub mod command;
 mod edit;
 pub mod entries;

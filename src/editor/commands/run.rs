@@ -13,8 +13,8 @@ use crate::log_panel::LOG;
 use crate::root::Editor;
 use crate::state::{EditorState, Request};
 use crate::{
-    camera_view, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion, relations, seeds,
-    selection,
+    arrange, camera_view, clipboard, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion,
+    relations, seeds, selection,
 };
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
@@ -44,6 +44,9 @@ impl Editor {
             Command::Render => self.rendering.open(&self.state.session.document),
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
+            Command::Copy => clipboard::copy(&mut self.state, ctx),
+            Command::Cut => clipboard::cut(&mut self.state, ctx),
+            Command::Paste => clipboard::request(ctx),
             Command::FindCommand => self.command_palette.open(),
             Command::Preferences => self.preferences_window.open(),
             _ => run_on_state(&mut self.state, command),
@@ -74,6 +77,11 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Redo => redo(session),
         Command::Rename => state.renaming = session.document.selection().last().copied(),
         Command::Duplicate => selection::duplicate(session),
+        Command::DuplicateAlong => relations::duplicate_along(state),
+        Command::ShowHistory => state.show_history ^= true,
+        Command::PastePart(_) | Command::Align(..) | Command::Distribute(_) | Command::MoveOrigin(_) => {
+            place(state, command)
+        }
         Command::Delete if state.playback.deletes_keys() => dope_sheet::delete(session, &mut state.playback),
         Command::Delete => selection::delete(session),
         Command::KeyTransform => keying::key_transforms(session),
@@ -87,12 +95,12 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::MoveDown => selection::shift(session, 1),
         Command::Join(operator) => selection::join(session, operator, false),
         Command::ToggleNegative => selection::toggle_negative(session),
-        Command::SelectAll => selection::select_all(session),
-        Command::SelectNothing => select_nothing(state),
-        Command::SelectParents => relations::select_parents(state),
-        Command::SelectChildren => relations::select_children(state),
-        Command::SelectSimilar => relations::select_similar(state),
-        Command::SelectByBox => state.view.wants_box = true,
+        Command::SelectAll | Command::SelectNothing | Command::SelectParents | Command::SelectChildren => {
+            select(state, command);
+        }
+        Command::SelectSimilar | Command::SelectSameMaterial | Command::SelectByBox | Command::SelectByLasso => {
+            select(state, command);
+        }
         Command::Isolate => relations::isolate(state),
         Command::DropOnSurface => relations::drop_on_surface(state),
         Command::MeshToField => mesh_conversion::to_fields(session),
@@ -105,10 +113,9 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::AddShape(kind) => insertion::shape(state, kind),
         Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
         Command::AddInstancer => instancer_edits::add(state),
-        Command::AddSun => add_sun(state),
-        Command::AddPointLight => add_point_light(state),
-        Command::AddSpotLight => add_spot_light(state),
-        Command::AddAreaLight => add_lamp(state, "Area light", LightKind::RECTANGLE),
+        Command::AddSun | Command::AddPointLight | Command::AddSpotLight | Command::AddAreaLight => {
+            add_light(state, command);
+        }
         Command::AddCamera => add_camera(state),
         Command::FrameSelected => state.frame_selected(),
         Command::FrameAll => state.frame_all(),
@@ -126,6 +133,7 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Transform(kind) => state.view.transforming = Some(kind),
         Command::UseTool(tool) => state.view.tool = tool,
         Command::UseOrientation(orientation) => state.view.orientation = orientation,
+        Command::UsePivot(pivot) => state.view.pivot = pivot,
         Command::UseKeymap(keymap) => state.use_keymap(keymap),
         Command::ShowShading(shading) => state.view.show_shading(shading),
         Command::CycleShading => state.view.cycle_shading(),
@@ -140,6 +148,30 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         | Command::AddMesh
         | Command::FindCommand
         | Command::Preferences => {}
+        Command::Copy | Command::Cut | Command::Paste => {}
+    }
+}
+
+fn place(state: &mut EditorState, command: Command) {
+    match command {
+        Command::PastePart(part) => clipboard::paste_part(state, part),
+        Command::Align(axis, edge) => arrange::align(state, axis, edge),
+        Command::Distribute(axis) => arrange::distribute(state, axis),
+        Command::MoveOrigin(place) => arrange::origin_to_children(state, place),
+        _ => {}
+    }
+}
+
+fn select(state: &mut EditorState, command: Command) {
+    match command {
+        Command::SelectAll => selection::select_all(&mut state.session),
+        Command::SelectParents => relations::select_parents(state),
+        Command::SelectChildren => relations::select_children(state),
+        Command::SelectSimilar => relations::select_similar(state),
+        Command::SelectSameMaterial => relations::select_same_material(state),
+        Command::SelectByLasso => state.view.wants_lasso = true,
+        Command::SelectByBox => state.view.wants_box = true,
+        _ => select_nothing(state),
     }
 }
 
@@ -189,12 +221,13 @@ fn add_sun(state: &mut EditorState) {
     add(state, Node::new("Sun", NodeKind::Light(Light::sun())).rotated(down));
 }
 
-fn add_point_light(state: &mut EditorState) {
-    add_lamp(state, "Point light", LightKind::POINT);
-}
-
-fn add_spot_light(state: &mut EditorState) {
-    add_lamp(state, "Spot light", LightKind::SPOT);
+fn add_light(state: &mut EditorState, command: Command) {
+    match command {
+        Command::AddPointLight => add_lamp(state, "Point light", LightKind::POINT),
+        Command::AddSpotLight => add_lamp(state, "Spot light", LightKind::SPOT),
+        Command::AddAreaLight => add_lamp(state, "Area light", LightKind::RECTANGLE),
+        _ => add_sun(state),
+    }
 }
 
 /// A light two meters above the view's target, shining down.

@@ -5,6 +5,7 @@ use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Popup};
 use super::command::Command;
 use super::info::Menu;
 use crate::add_palette::AddPalette;
+use crate::clipboard;
 use crate::command_palette::CommandPalette;
 use crate::keymap::KeyBindings;
 use crate::root::Editor;
@@ -44,6 +45,7 @@ impl Editor {
         if jobs.escapable().is_some() && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
             jobs.cancel_foremost();
         }
+        clipboard::take_events(&mut self.state, ctx);
         while let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, |_| true)) {
             self.run(command, ctx);
         }

@@ -8,7 +8,7 @@ use super::info::{CommandInfo, Icon, Menu};
 use crate::icons::tool_icon;
 use crate::keymap::Keymap;
 use crate::state::EditorState;
-use crate::transforms::kinds::{Orientation, Tool, TransformKind};
+use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 
 const NONE: Modifiers = Modifiers::NONE;
 
@@ -48,6 +48,11 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let label = format!("Orientation: {}", orientation.label());
         CommandInfo::new(Menu::Orientation, Command::UseOrientation(orientation), None, label, orientation.help())
             .switch(|state, command| command == Command::UseOrientation(state.view.orientation))
+    }));
+    all.extend(PivotPoint::ALL.into_iter().map(|pivot| {
+        let label = format!("Pivot: {}", pivot.label().to_lowercase());
+        CommandInfo::new(Menu::Pivot, Command::UsePivot(pivot), None, label, pivot.help())
+            .switch(|state, command| command == Command::UsePivot(state.view.pivot))
     }));
     all.extend(Keymap::ALL.into_iter().map(|keymap| {
         let label = format!("Keymap: {}", keymap.label());

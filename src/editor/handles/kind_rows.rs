@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::measures::Measures;
-use super::rows::{HandleRow, zero};
+use super::rows::{HandleRow, one, zero};
 use super::shape_rows;
 use isolith_scene::{Lattice, LightKind, Node, NodeKind, Part};
 
@@ -13,6 +13,10 @@ fn forward(_: &Measures<'_>) -> DVec3 {
 
 fn back(_: &Measures<'_>) -> DVec3 {
     DVec3::Z
+}
+
+fn down(_: &Measures<'_>) -> DVec3 {
+    DVec3::NEG_Y
 }
 
 fn up(_: &Measures<'_>) -> DVec3 {
@@ -59,12 +63,22 @@ const LENS: &[HandleRow] = &[CAMERA[0], HandleRow::along("focus_distance", zero,
 const GROUP: &[HandleRow] = &[HandleRow::part_along("blend.radius", beside_seam, outward, |m| m.blend_unit)];
 
 const SPACING: HandleRow = HandleRow::along("lattice.spacing", zero, right);
+/// The copies stand around the middle, so that half of them reach to the end of the lattice. 0 is without end: a drag
+/// makes an end.
+const COUNTS: [HandleRow; 3] = [
+    HandleRow::part_along("lattice.counts", zero, left, |m| 0.5 * m.vector("lattice.spacing").x),
+    HandleRow::part_along("lattice.counts", zero, down, |m| 0.5 * m.vector("lattice.spacing").y),
+    HandleRow::part_along("lattice.counts", zero, forward, |m| 0.5 * m.vector("lattice.spacing").z),
+];
 const GRID: &[HandleRow] = &[
     SPACING.element(0),
     HandleRow::along("lattice.spacing", zero, back).element(2),
     HandleRow::along("lattice.spacing", zero, up).element(1),
+    COUNTS[0].element(0).at_least(one),
+    COUNTS[2].element(2).at_least(one),
+    COUNTS[1].element(1).at_least(one),
 ];
-const FLAT_GRID: &[HandleRow] = &[GRID[0], GRID[1]];
+const FLAT_GRID: &[HandleRow] = &[GRID[0], GRID[1], GRID[3], GRID[4]];
 const HONEYCOMB: &[HandleRow] = &[SPACING, HandleRow::along("lattice.height", zero, up)];
 const FLAT_HONEYCOMB: &[HandleRow] = &[SPACING];
 const RINGS: &[HandleRow] = &[
@@ -94,7 +108,7 @@ pub fn rows_of(node: &Node) -> (Part, &'static [HandleRow]) {
     }
 }
 
-/// The spacing along each axis that has more than one cell; flat lattices are the usual ones.
+/// The spacing and the count along each axis that has more than one cell; flat lattices are the usual ones.
 fn lattice_rows(lattice: &Lattice) -> &'static [HandleRow] {
     match lattice {
         Lattice::Grid { counts: [_, 1, _], .. } => FLAT_GRID,

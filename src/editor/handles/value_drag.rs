@@ -125,10 +125,13 @@ impl ValueDrag {
         };
         let finest = 10.0_f64.powf(finest.log10().round());
         let [low, high] = self.handle.range;
-        let value = rounded(self.handle.value + way, if step > 0.0 { step } else { finest });
+        let is_count = matches!(self.handle.path.get_in(&self.node), Some(ParamValue::Count(_)));
+        let step = if step > 0.0 { step } else { finest };
+        let value = rounded(self.handle.value + way, if is_count { 1.0 } else { step });
         let value = value.clamp(low, high.max(low));
         let mut node = self.node.clone();
-        self.handle.path.set_in(&mut node, ParamValue::Scalar(value)).then_some((node, value))
+        let new = if is_count { ParamValue::Count(value as u32) } else { ParamValue::Scalar(value) };
+        self.handle.path.set_in(&mut node, new).then_some((node, value))
     }
 
     fn with_place(&self, pace: Pace) -> Option<(Node, String)> {

@@ -170,6 +170,7 @@ impl Placed {
 fn placed(m: &Measures<'_>, row: &HandleRow, value: &ParamValue) -> Vec<Placed> {
     let number = match (value, row.element) {
         (ParamValue::Vector(v), Some(axis)) => v[axis.min(2)],
+        (ParamValue::Counts(n), Some(axis)) => f64::from(n[axis.min(2)]),
         (ParamValue::Scalar(v), _) => *v,
         _ => 0.0,
     };

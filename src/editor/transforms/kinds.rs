@@ -113,6 +113,45 @@ impl Orientation {
     }
 }
 
+/// The point around which the selection turns and scales.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PivotPoint {
+    /// The mean of the origins of the selected nodes.
+    #[default]
+    Median,
+    /// The origin of each node for itself.
+    Individual,
+    /// The origin of the active node.
+    Active,
+    /// The origin of the world.
+    World,
+}
+
+impl PivotPoint {
+    /// Every pivot, in the order of the menu.
+    pub const ALL: [Self; 4] = [Self::Median, Self::Individual, Self::Active, Self::World];
+
+    /// Display name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Median => "Median",
+            Self::Individual => "Individual origins",
+            Self::Active => "Active node",
+            Self::World => "World origin",
+        }
+    }
+
+    /// The help text.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Median => "Turns and scales around the middle of all selected origins",
+            Self::Individual => "Turns and scales each node around its own origin",
+            Self::Active => "Turns and scales around the origin of the active node",
+            Self::World => "Turns and scales around the origin of the world",
+        }
+    }
+}
+
 /// What a transform is limited to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Constraint {

@@ -27,6 +27,7 @@ pub fn take_keys(drag: &mut TransformDrag, events: &[Event], usual: Orientation)
                 Key::Escape => return ModalStep::Canceled,
                 Key::Backspace => drag.typed.pop(),
                 Key::Tab => drag.typed.next(drag.numbers()),
+                Key::F if drag.typed.is_empty() => drag.surface = drag.surface.next(),
                 Key::X => limit(drag, 0, *modifiers, usual),
                 Key::Y => limit(drag, 1, *modifiers, usual),
                 Key::Z => limit(drag, 2, *modifiers, usual),
@@ -36,7 +37,7 @@ pub fn take_keys(drag: &mut TransformDrag, events: &[Event], usual: Orientation)
                 _ => {}
             },
             Event::Text(text) => {
-                let others = if drag.typed.is_empty() { "xyzgrs" } else { "xyz" };
+                let others = if drag.typed.is_empty() { "xyzfgrs" } else { "xyz" };
                 let is_taken = |c: &char| !others.contains(*c);
                 let taken: Vec<char> = text.chars().map(|c| c.to_ascii_lowercase()).filter(is_taken).collect();
                 taken.into_iter().for_each(|c| drag.typed.push(c));

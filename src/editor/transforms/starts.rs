@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use super::kinds::PivotPoint;
 use crate::edit_session::EditSession;
 use crate::selection;
 use crate::steps::rounded_point;
@@ -18,6 +19,21 @@ pub enum SelectionMotion {
     Turn(DVec3, f64),
     /// By a factor along each of the axes.
     Stretch(DVec3),
+    /// Turned around the pivot, and then moved by an offset: onto a surface.
+    Onto(DQuat, DVec3),
+}
+
+/// A transform that has ended, to be repeated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastMotion {
+    /// What was done.
+    pub motion: SelectionMotion,
+    /// The axes of a stretch.
+    pub axes: DMat3,
+    /// The pivot, in the world.
+    pub pivot: DVec3,
+    /// Each node had its own pivot.
+    pub is_individual: bool,
 }
 
 /// A node's placement at the start.
@@ -34,11 +50,31 @@ pub struct Starts {
     blends: Vec<Node>,
     /// The pivot in the world.
     pub pivot: DVec3,
+    /// Each node turns and scales around its own origin.
+    pub is_individual: bool,
+}
+
+/// The pivot of the selection in the world; `None` if no node can move.
+pub fn pivot_of(session: &EditSession, point: PivotPoint) -> Option<DVec3> {
+    let scene = session.document.scene();
+    let ids: Vec<_> =
+        selection::roots(session).into_iter().filter(|id| selection::holder_of_lock(scene, *id).is_none()).collect();
+    let place = |id: NodeId| scene.world_from_local(id).translation;
+    if ids.is_empty() {
+        return None;
+    }
+    match point {
+        PivotPoint::World => Some(DVec3::ZERO),
+        PivotPoint::Active => session.document.selection().last().map(|id| place(*id)),
+        PivotPoint::Median | PivotPoint::Individual => {
+            Some(ids.iter().map(|id| place(*id)).sum::<DVec3>() / ids.len() as f64)
+        }
+    }
 }
 
 impl Starts {
     /// The selected nodes that are not locked; `None` if there are none.
-    pub fn new(session: &EditSession) -> Option<Self> {
+    pub fn new(session: &EditSession, point: PivotPoint) -> Option<Self> {
         let scene = session.document.scene();
         let ids: Vec<NodeId> = selection::roots(session)
             .into_iter()
@@ -53,14 +89,18 @@ impl Starts {
         if nodes.is_empty() {
             return None;
         }
-        let place = |start: &Start| start.world_from_parent.transform_point3(start.transform.translation);
-        let pivot = nodes.iter().map(place).sum::<DVec3>() / nodes.len() as f64;
+        let pivot = pivot_of(session, point)?;
         let mut blends = Vec::new();
         for id in &ids {
             let below = scene.index_of(*id).map_or(0..0, |index| scene.subtree(index));
             blends.extend(scene.nodes()[below].iter().filter(|node| has_lengths(node)).map(|node| Node::clone(node)));
         }
-        Some(Self { nodes, blends, pivot })
+        Some(Self { nodes, blends, pivot, is_individual: point == PivotPoint::Individual })
+    }
+
+    /// The ids of the nodes.
+    pub fn ids(&self) -> Vec<NodeId> {
+        self.nodes.iter().map(|start| start.id).collect()
     }
 
     /// Applies a motion. `axes` are those of a stretch; `finest` is the length of what a pixel can tell apart.
@@ -94,10 +134,13 @@ impl Starts {
             SelectionMotion::Offset(_) => DMat3::IDENTITY,
             SelectionMotion::Turn(axis, degrees) => DMat3::from_axis_angle(axis, degrees.to_radians()),
             SelectionMotion::Stretch(factors) => *axes * DMat3::from_diagonal(factors) * axes.transpose(),
+            SelectionMotion::Onto(turn, _) => DMat3::from_quat(turn),
         };
+        let pivot = if self.is_individual { place } else { self.pivot };
         let target = match motion {
             SelectionMotion::Offset(offset) => place + offset,
-            _ => self.pivot + linear * (place - self.pivot),
+            SelectionMotion::Onto(_, offset) => self.pivot + linear * (place - self.pivot) + offset,
+            _ => pivot + linear * (place - pivot),
         };
         // A node at the pivot stays there to the bit. Elsewhere a cleaner number costs no more than a fraction of what
         // can be seen.
@@ -107,7 +150,8 @@ impl Starts {
         };
         match motion {
             SelectionMotion::Offset(_) => Transform { translation, ..start.transform },
-            SelectionMotion::Turn(..) => {
+            SelectionMotion::Onto(turn, _) if turn == DQuat::IDENTITY => Transform { translation, ..start.transform },
+            SelectionMotion::Turn(..) | SelectionMotion::Onto(..) => {
                 let in_parent = parent_from_world.matrix3 * linear * start.world_from_parent.matrix3;
                 Transform { translation, rotation: (turn_of(&in_parent) * rotation).normalize(), scale }
             }
@@ -194,7 +238,7 @@ mod tests {
         let (mut session, ids) = session();
         session.document.select(vec![ids[chosen]]);
         let before = session.document.scene().world_from_local(ids[chosen]);
-        let starts = Starts::new(&session).unwrap();
+        let starts = Starts::new(&session, PivotPoint::Median).unwrap();
         starts.apply(&mut session, egui::Id::NULL, motion, &DMat3::IDENTITY, 1e-9);
         let after = session.document.scene().world_from_local(ids[chosen]);
         (before, after, session)
@@ -209,6 +253,25 @@ mod tests {
         let (before, after, _) = moved(SelectionMotion::Turn(axis, 40.0), 1);
         let wanted = DMat3::from_axis_angle(axis, 40.0_f64.to_radians()) * before.matrix3;
         assert!(after.matrix3.abs_diff_eq(wanted, 1e-9) && after.translation == before.translation);
+    }
+
+    #[test]
+    fn each_node_turns_around_its_own_origin_or_all_around_one() {
+        let mut scene = Scene::new();
+        let group = |x: f64| Node::new("G", NodeKind::Group(Group::UNION)).at(DVec3::X * x);
+        let ids = [1.0, 3.0].map(|x| scene.insert(None, 0, group(x)).unwrap());
+        let turned = |point: PivotPoint| {
+            let mut session = EditSession::new(Document::new(scene.clone()));
+            session.document.select(ids.to_vec());
+            let starts = Starts::new(&session, point).unwrap();
+            let motion = SelectionMotion::Turn(DVec3::Y, 180.0);
+            starts.apply(&mut session, egui::Id::NULL, motion, &DMat3::IDENTITY, 1e-6);
+            ids.map(|id| session.document.scene().node(id).unwrap().transform.translation.x)
+        };
+        assert_eq!(turned(PivotPoint::Median), [3.0, 1.0]);
+        assert_eq!(turned(PivotPoint::Individual), [1.0, 3.0]);
+        assert_eq!(turned(PivotPoint::Active), [5.0, 3.0], "the last one is the active one");
+        assert_eq!(turned(PivotPoint::World), [-1.0, -3.0]);
     }
 
     #[test]
@@ -231,7 +294,7 @@ mod tests {
         let id = scene.insert(None, 0, node).unwrap();
         let mut session = EditSession::new(Document::new(scene));
         session.document.select(vec![id]);
-        let starts = Starts::new(&session).unwrap();
+        let starts = Starts::new(&session, PivotPoint::Median).unwrap();
         let motion = SelectionMotion::Stretch(DVec3::new(3.0, 1.0, 1.0));
         starts.apply(&mut session, egui::Id::NULL, motion, &DMat3::IDENTITY, 1e-9);
         assert_eq!(session.document.scene().nodes()[0].transform.scale, DVec3::new(1.0, 3.0, 1.0));

@@ -17,7 +17,7 @@ const BUTTON: egui::Vec2 = vec2(30.0, 28.0);
 /// Shows the bar over the picture.
 pub fn show(state: &mut EditorState, ui: &mut Ui) {
     let corner = state.view.rect.left_top() + vec2(MARGIN, MARGIN);
-    let room = Rect::from_min_size(corner, vec2(BUTTON.x + 4.0, 5.0 * (BUTTON.y + 2.0) + 8.0));
+    let room = Rect::from_min_size(corner, vec2(BUTTON.x + 4.0, 6.0 * (BUTTON.y + 2.0) + 8.0));
     let mut bar = ui.new_child(UiBuilder::new().max_rect(room).layout(Layout::top_down(Align::Min)));
     let frame = Frame::new().fill(theme::FLOATING.gamma_multiply(0.88)).corner_radius(7.0).inner_margin(2.0);
     let chosen = frame.show(&mut bar, |ui| {
@@ -34,23 +34,32 @@ pub fn show(state: &mut EditorState, ui: &mut Ui) {
                 chosen = Some(Command::UseTool(tool));
             }
         }
-        orientation(state, ui).or(chosen)
+        let [orientation, pivot] = [state.view.orientation.label(), state.view.pivot.label()];
+        let axes = format!("Axes of the tools: {}", orientation.to_lowercase());
+        let around = format!("Pivot of the tools: {}", pivot.to_lowercase());
+        let chosen = choice(state, ui, ("Orientation", orientation, axes), Menu::Orientation).or(chosen);
+        choice(state, ui, ("Pivot", pivot, around), Menu::Pivot).or(chosen)
     });
     state.requests.extend(chosen.inner.map(Request::Run));
 }
 
-/// The menu of orientations; its button names the one in use.
-fn orientation(state: &EditorState, ui: &mut Ui) -> Option<Command> {
-    let short: String = state.view.orientation.label().chars().take(2).collect();
+/// A menu of choices; its button shows the first letters of the one in use.
+fn choice(
+    state: &EditorState,
+    ui: &mut Ui,
+    (name, current, help): (&str, &str, String),
+    menu: Menu,
+) -> Option<Command> {
+    let short: String = current.chars().take(2).collect();
     ui.spacing_mut().button_padding.x = 2.0;
     let opener = Button::new(RichText::new(short).size(12.0).color(theme::WEAK));
     let opener = opener.min_size(BUTTON).frame_when_inactive(false);
     let (button, menu) = egui::containers::menu::MenuButton::from_button(opener).ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
         ui.set_min_width(190.0);
-        menu_entries(ui, state, Menu::Orientation)
+        menu_entries(ui, state, menu)
     });
-    ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Orientation"));
-    button.on_hover_text(format!("Axes of the tools: {}", state.view.orientation.label().to_lowercase()));
+    ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(name.to_owned()));
+    button.on_hover_text(help);
     menu.and_then(|menu| menu.inner)
 }

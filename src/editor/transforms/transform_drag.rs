@@ -3,14 +3,16 @@
 use egui::{Pos2, Vec2};
 use glam::{DMat3, DQuat, DVec3};
 
-use super::kinds::{Constraint, Orientation, TransformKind};
-use super::starts::{SelectionMotion, Starts, turn_of};
+use super::kinds::{Constraint, Orientation, PivotPoint, TransformKind};
+use super::onto_surface::{Standing, SurfaceSnap};
+use super::starts::{LastMotion, SelectionMotion, Starts, turn_of};
 use super::typed::Typed;
 use crate::edit_session::EditSession;
 use crate::numbers::number_text;
 use crate::projection::Projection;
 use crate::steps::{ANGLE_STEP, finest_step, rounded};
-use isolith_geometry::Ray;
+use isolith_geometry::{Aabb, Ray};
+use isolith_scene::NodeId;
 
 /// The modifiers that change how a drag follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,6 +21,8 @@ pub struct Following {
     pub precise: bool,
     /// The step of lengths in meters; 0 for none, and then angles and factors have none either.
     pub snap: f64,
+    /// The surface under the pointer, with its normal, while the move snaps to it.
+    pub surface: Option<[DVec3; 2]>,
 }
 
 /// Factors while snapping.
@@ -41,6 +45,9 @@ pub struct TransformDrag {
     pub orientation: Orientation,
     /// What is typed.
     pub typed: Typed,
+    /// Whether a move goes onto the surface under the pointer.
+    pub surface: SurfaceSnap,
+    standing: Standing,
     /// The axes now.
     axes: DMat3,
     /// The axes of every orientation at the start.
@@ -73,15 +80,18 @@ impl TransformDrag {
     pub fn begin(
         session: &EditSession,
         kind: TransformKind,
-        (orientation, view): (Orientation, DQuat),
+        (orientation, view, point): (Orientation, DQuat, PivotPoint),
         pointer: Pos2,
     ) -> Option<Self> {
-        let starts = Starts::new(session)?;
+        let starts = Starts::new(session, point)?;
+        let up = axes_of(session, Orientation::Local, view).col(1);
         Some(Self {
             kind,
             constraint: Constraint::Free,
             orientation,
             typed: Typed::default(),
+            surface: SurfaceSnap::Off,
+            standing: Standing { up, ..Standing::default() },
             axes: axes_of(session, orientation, view),
             bases: Orientation::ALL.map(|orientation| axes_of(session, orientation, view)),
             starts,
@@ -98,6 +108,24 @@ impl TransformDrag {
     pub fn limited(mut self, constraint: Constraint) -> Self {
         self.constraint = constraint;
         self
+    }
+
+    /// The same for nodes with these bounds in the world.
+    pub fn standing_on(mut self, bounds: Aabb) -> Self {
+        self.standing.bounds = bounds;
+        self
+    }
+
+    /// The nodes that move.
+    pub fn ids(&self) -> Vec<NodeId> {
+        self.starts.ids()
+    }
+
+    /// What has been done, to be repeated; `None` if nothing.
+    pub fn last_motion(&self) -> Option<LastMotion> {
+        let (pivot, is_individual) = (self.starts.pivot, self.starts.is_individual);
+        let moves = self.motion != SelectionMotion::Offset(DVec3::ZERO);
+        moves.then_some(LastMotion { motion: self.motion, axes: self.axes, pivot, is_individual })
     }
 
     /// Follows other axes from now on: those that they were at the start.
@@ -132,8 +160,12 @@ impl TransformDrag {
         }
         self.way += (pointer - self.last) * pace;
         self.last = pointer;
-        let motion =
-            if self.typed.is_empty() { self.pointed(projection, view, following.snap) } else { self.as_typed(view) };
+        let surface = following.surface.filter(|_| self.kind == TransformKind::Move);
+        let motion = match (self.typed.is_empty(), surface) {
+            (true, Some(on)) => self.standing.motion(self.pivot(), on, self.surface, self.finest),
+            (true, None) => self.pointed(projection, view, following.snap),
+            (false, _) => self.as_typed(view),
+        };
         self.motion = motion.unwrap_or(self.motion);
     }
 
@@ -244,9 +276,12 @@ impl TransformDrag {
         let letters = self.constraint.letters();
         let space = |text: &str| if text.is_empty() { String::new() } else { format!(" {text}") };
         let name = format!("{}{}", self.kind.label(), space(letters));
+        if let Some(text) = self.surface.text().filter(|_| self.kind == TransformKind::Move && self.typed.is_empty()) {
+            return format!("{name}  {text}");
+        }
         let amount = match self.motion {
             _ if !self.typed.is_empty() => self.typed.shown(self.numbers()),
-            SelectionMotion::Offset(offset) => {
+            SelectionMotion::Offset(offset) | SelectionMotion::Onto(_, offset) => {
                 let along =
                     (self.axes.transpose() * offset).to_array().map(|v| number_text(rounded(v, self.finest * 0.1)));
                 match self.constraint {
