@@ -117,6 +117,13 @@ fn run_on_state(state: &mut EditorState, command: Command) {
             add_light(state, command);
         }
         Command::AddCamera => add_camera(state),
+        _ => run_on_view(state, command),
+    }
+}
+
+/// Runs a command on the view, the panels or the tools.
+fn run_on_view(state: &mut EditorState, command: Command) {
+    match command {
         Command::FrameSelected => state.frame_selected(),
         Command::FrameAll => state.frame_all(),
         Command::LookThroughCamera => state.look_through_camera(),
@@ -139,16 +146,8 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::CycleShading => state.view.cycle_shading(),
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
-        Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::ShowHelp | Command::ShowKeys | Command::ShowNews | Command::StartTour | Command::ShowWelcome => {}
-        Command::Quit
-        | Command::Render
-        | Command::ExamineScene
-        | Command::AddAtPointer
-        | Command::AddMesh
-        | Command::FindCommand
-        | Command::Preferences => {}
-        Command::Copy | Command::Cut | Command::Paste => {}
+        // Those of a window in front or a file.
+        _ => {}
     }
 }
 
