@@ -202,7 +202,7 @@ impl Doctor {
                 };
                 ui.label(RichText::new(text).weak());
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let text = RichText::new("Scan").color(Color32::BLACK);
+                    let text = RichText::new("Scan").color(theme::ON_ACCENT);
                     let button = ui.add(Button::new(text).fill(theme::ACCENT).min_size(vec2(84.0, 24.0)));
                     ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Scan the scene"));
                     if button.clicked() {
@@ -321,7 +321,7 @@ fn budget_bar(cost: &SceneCost, aim: &mut u32, ui: &mut Ui) {
         true => format!("{:.0} % of the budget", 100.0 * cost.seconds / budget),
         false => format!("{:.1} times the budget", cost.seconds / budget),
     };
-    let color = if cost.seconds <= budget { theme::SUCCESS } else { ui.visuals().warn_fg_color };
+    let color = if cost.seconds <= budget { *theme::SUCCESS } else { ui.visuals().warn_fg_color };
     ui.label(RichText::new(verdict).color(color));
 }
 

@@ -5,7 +5,7 @@ use egui::{Context, Grid, Id, Label, RichText, ScrollArea, TextEdit, Ui, Window,
 use super::changelog::{NewsLine, news};
 use super::commands::command::Command;
 use super::help_pages::PAGES;
-use super::keymap::{Keymap, shown};
+use super::keymap::{KeyBindings, shown};
 use super::theme;
 
 /// Size of the content, in points.
@@ -119,14 +119,14 @@ impl Help {
     }
 
     fn keys(&mut self, height: f32, ui: &mut Ui) {
-        let keymap = Keymap::of(ui.ctx());
+        let bindings = KeyBindings::of(ui.ctx());
         ui.horizontal(|ui| {
             let field = TextEdit::singleline(&mut self.search).hint_text("Search keys…").desired_width(260.0);
             let response = ui.add(field);
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Search keys"));
-            ui.label(RichText::new(format!("Keymap: {}", keymap.label())).weak());
+            ui.label(RichText::new(format!("Keymap: {}", bindings.keymap().label())).weak());
         });
-        let rows = key_rows(ui.ctx(), keymap, &self.search);
+        let rows = key_rows(ui.ctx(), &bindings, &self.search);
         ScrollArea::vertical().max_height(height - 40.0).auto_shrink([false, false]).show(ui, |ui| {
             if rows.is_empty() {
                 ui.label(RichText::new("No key does this.").weak());
@@ -171,10 +171,10 @@ impl Help {
 }
 
 /// Commands with their keys, and gestures of the mouse, whose names or keys contain the text.
-fn key_rows(ctx: &Context, keymap: Keymap, search: &str) -> Vec<(String, String)> {
+fn key_rows(ctx: &Context, bindings: &KeyBindings, search: &str) -> Vec<(String, String)> {
     let of_command = |command: Command| {
         let info = command.info();
-        let keys: Vec<_> = info.keys(keymap).iter().map(|key| shown(ctx, key)).collect();
+        let keys: Vec<_> = info.keys_in(bindings).iter().map(|key| shown(ctx, key)).collect();
         (!keys.is_empty()).then(|| (info.label.clone(), keys.join(", ")))
     };
     let mouse = MOUSE.iter().map(|(what, how)| (format!("{what} (viewport)"), (*how).to_owned()));
@@ -190,6 +190,7 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
+    use crate::keymap::Keymap;
 
     #[test]
     fn every_panel_has_a_page() {
@@ -204,8 +205,12 @@ mod tests {
     #[test]
     fn keys_are_those_of_the_keymap_and_found_by_name_and_by_key() {
         let ctx = Context::default();
-        let names =
-            |keymap, search: &str| key_rows(&ctx, keymap, search).into_iter().map(|(what, _)| what).collect::<Vec<_>>();
+        let names = |keymap, search: &str| {
+            key_rows(&ctx, &KeyBindings::new(keymap, None), search)
+                .into_iter()
+                .map(|(what, _)| what)
+                .collect::<Vec<_>>()
+        };
         assert!(names(Keymap::Blender, "move").contains(&"Move".to_owned()));
         assert!(names(Keymap::Blender, "F12").contains(&"Render…".to_owned()));
         assert_ne!(names(Keymap::Blender, ""), names(Keymap::Industry, ""));

@@ -247,7 +247,7 @@ impl Rendering {
         match (&self.outcome, &reason) {
             (_, Some(reason)) => colored(ui, reason, ui.visuals().warn_fg_color),
             (Some(RenderOutcome::Done(report)), _) => {
-                colored(ui, &report_text(report), theme::SUCCESS);
+                colored(ui, &report_text(report), *theme::SUCCESS);
                 for warning in report.warnings.iter().take(FILES_LISTED) {
                     colored(ui, &format!("{}: {}", warning.name, warning.reason), ui.visuals().warn_fg_color);
                 }
@@ -360,7 +360,7 @@ fn colored(ui: &mut Ui, text: &str, color: egui::Color32) {
 }
 
 fn accented(ui: &mut Ui, text: &str) -> bool {
-    let button = Button::new(RichText::new(text).color(egui::Color32::BLACK)).fill(theme::ACCENT);
+    let button = Button::new(RichText::new(text).color(theme::ON_ACCENT)).fill(theme::ACCENT);
     ui.add(button.min_size(vec2(110.0, 28.0))).clicked()
 }
 

@@ -109,7 +109,7 @@ impl Tour {
                     }
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                         let text = if index + 1 == STEPS.len() { "Done" } else { "Next" };
-                        let button = Button::new(RichText::new(text).color(Color32::BLACK)).fill(theme::ACCENT);
+                        let button = Button::new(RichText::new(text).color(theme::ON_ACCENT)).fill(theme::ACCENT);
                         if ui.add(button.min_size(vec2(70.0, 26.0))).clicked() {
                             next = Some(index + 1).filter(|next| *next < STEPS.len());
                         }

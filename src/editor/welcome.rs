@@ -245,7 +245,7 @@ fn line_button(ui: &mut Ui, picture: Option<&TextureHandle>, icon: &str, text: &
     match picture {
         Some(texture) => paint(ui, texture, square),
         None => {
-            let (font, color) = (FontId::proportional(20.0), theme::ACCENT);
+            let (font, color) = (FontId::proportional(20.0), *theme::ACCENT);
             ui.painter().text(square.center(), Align2::CENTER_CENTER, icon, font, color);
         }
     }
