@@ -235,11 +235,51 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
     end
 }
 
+/// The events of a long run, if one is asked for.
+fn long_run() -> Option<usize> {
+    std::env::var(LONG_RUN).ok().and_then(|text| text.parse().ok())
+}
+
 #[test]
 fn undo_leads_back_from_whatever_a_monkey_does() {
-    let events = std::env::var(LONG_RUN).ok().and_then(|text| text.parse().ok()).unwrap_or(SHORT_RUN);
+    let events = long_run().unwrap_or(SHORT_RUN);
     let (mut scene, _) = scene();
     for (seed, _) in (0..events).step_by(PER_ROUND).enumerate() {
         scene = round(seed as u64 + 1, scene, events.min(PER_ROUND));
+    }
+}
+
+/// Kilobytes that this process has in memory; `None` where the system does not tell.
+fn resident() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    text.split_whitespace().nth(1)?.parse::<f64>().ok().map(|pages| pages * 4.0)
+}
+
+/// Judges the memory in a long run only, which has the process for itself.
+#[test]
+fn edits_and_their_undos_leave_nothing_behind() {
+    let pairs = long_run().unwrap_or(100);
+    let (scene, [.., ring]) = scene();
+    let mut harness = open_in(Document::new(scene.clone()), WINDOW);
+    harness.state_mut().document_mut().select(vec![ring]);
+    harness.run_steps(4);
+    let mut early = None;
+    for pair in 0..pairs {
+        harness.key_press(Key::N);
+        harness.step();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.step();
+        if pair == pairs / 10 {
+            early = resident();
+        }
+    }
+    harness.run_steps(8);
+    let document = harness.state().document();
+    assert_eq!((document.undo_labels().count(), document.redo_labels().count()), (0, 1));
+    assert_eq!(*document.scene(), scene);
+    assert!(document.revision() >= 2 * pairs as u64, "each key did something: {}", document.revision());
+    if let (Some(early), Some(late), Some(_)) = (early, resident(), long_run()) {
+        note(&format!("{pairs} edits and undos: {early} KiB after a tenth of them, {late} KiB in the end"));
+        assert!(late < 1.05 * early, "{early} KiB became {late} KiB");
     }
 }
