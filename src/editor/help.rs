@@ -189,6 +189,7 @@ fn key_rows(ctx: &Context, bindings: &KeyBindings, search: &str) -> Vec<(String,
 mod tests {
     use std::collections::HashSet;
 
+    use super::super::keymap::Keymap;
     use super::*;
     use crate::keymap::Keymap;
 

@@ -218,6 +218,9 @@ fn warning(state: &EditorState) -> Option<(NodeId, String)> {
     if let Some(problem) = state.derived.model_problem() {
         return Some(problem.clone());
     }
+    if let Some(problem) = state.derived.field_problem(&state.session.document) {
+        return Some(problem);
+    }
     let warnings = &state.flat().warnings;
     let first = warnings.first()?;
     let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
