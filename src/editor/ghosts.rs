@@ -61,8 +61,8 @@ impl Ghosts {
             }
             let Some((_, ghost)) = self.ghosts.iter().find(|(known, _)| *known == id) else { continue };
             let is_cutter = scene.node(id).is_some_and(|node| cuts(scene, node));
-            let color = if is_cutter { *theme::NEGATIVE } else { *theme::WEAK };
-            paint_lines(painter, projection, &ghost.lines, &scene.world_from_local(id), color);
+            let color = if is_cutter { theme::NEGATIVE } else { theme::WEAK };
+            paint_lines(painter, projection, &ghost.lines, &scene.world_from_local(id), *color);
         }
     }
 }

@@ -189,8 +189,8 @@ fn key_rows(ctx: &Context, bindings: &KeyBindings, search: &str) -> Vec<(String,
 mod tests {
     use std::collections::HashSet;
 
+    use super::super::keymap::Keymap;
     use super::*;
-    use crate::keymap::Keymap;
 
     #[test]
     fn every_panel_has_a_page() {

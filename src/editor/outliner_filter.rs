@@ -126,7 +126,7 @@ pub fn operators(ui: &mut Ui, node: &Node, current: Operator) -> Option<(Id, Ope
 }
 
 /// A small switch at the end of a row.
-pub fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: Color32) -> egui::Response {
+pub fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: impl Into<Color32>) -> egui::Response {
     let text = icon.rich_text().size(14.0).color(color);
     let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));

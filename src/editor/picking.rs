@@ -37,7 +37,7 @@ fn pick_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Option<NodeId> {
 /// The nodes that the ray meets, nearest first: each is looked for without those before it.
 pub fn pick_all(state: &EditorState, ray: &Ray) -> Vec<NodeId> {
     let mut found = Vec::new();
-    let mut scene = Scene::clone(&state.derived.filled(state.session.document.scene()));
+    let mut scene = state.derived.filled(state.session.document.scene()).into_owned();
     let mut hit = pick_node(state, ray);
     while let Some(id) = hit.filter(|_| found.len() < MOST_BELOW) {
         found.push(id);
@@ -74,7 +74,7 @@ pub fn pick_surface_without(
 
 /// The scene without some nodes, to look for several points in it.
 pub fn flat_without(state: &EditorState, without: &[NodeId]) -> Option<FlatScene> {
-    let mut scene = Scene::clone(&state.derived.filled(state.session.document.scene()));
+    let mut scene = state.derived.filled(state.session.document.scene()).into_owned();
     let unique: HashSet<NodeId> = without.iter().copied().collect();
     for id in unique {
         hide(&mut scene, id);

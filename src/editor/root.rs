@@ -15,7 +15,6 @@ use super::dialogs::Dialogs;
 use super::doctor::Doctor;
 use super::document_jobs::{Opening, Saving};
 use super::help::Help;
-use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
 use super::preferences_window::PreferencesWindow;
