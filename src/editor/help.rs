@@ -191,7 +191,6 @@ mod tests {
 
     use super::super::keymap::Keymap;
     use super::*;
-    use crate::keymap::Keymap;
 
     #[test]
     fn every_panel_has_a_page() {

@@ -1,7 +1,7 @@
 //! The tour: six steps through the window, each beside what it is about. It never stands in the way: the scene can be
 //! edited meanwhile.
 
-use egui::{Align, Align2, Area, Button, Color32, Context, Frame, Id, Key, Layout, Order, Rect, RichText, vec2};
+use egui::{Align, Align2, Area, Button, Context, Frame, Id, Key, Layout, Order, Rect, RichText, vec2};
 
 use super::state::EditorState;
 use super::theme;
