@@ -36,10 +36,6 @@ struct Overlay {
 @group(2) @binding(1) var leaf_target: texture_2d<u32>;
 @group(3) @binding(0) var picture: texture_2d<f32>;
 
-// The outline: a bright line, and a dark rim around it for bright pictures.
-const OVERLAY_LINE = vec3f(1.0, 0.62, 0.2);
-const OVERLAY_RIM = vec3f(0.1, 0.1, 0.12);
-
 @fragment
 fn overlay_grid_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     return overlay_grid(vec2u(at.xy));
@@ -47,8 +43,7 @@ fn overlay_grid_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
 
 @fragment
 fn overlay_outline_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let mark = overlay_mark(vec2u(at.xy));
-    return vec4f(select(OVERLAY_RIM, OVERLAY_LINE, mark == 2u), f32(mark > 0u));
+    return vec4f(1.0, 0.62, 0.2, f32(overlay_is_edge(vec2u(at.xy))));
 }
 
 @fragment
@@ -63,8 +58,7 @@ fn overlay_enlarge_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f 
 
 @fragment
 fn overlay_coarse_outline_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let coverage = overlay_coarse_edge(at.xy);
-    return vec4f(mix(OVERLAY_RIM, OVERLAY_LINE, coverage.x / max(coverage.y, 1e-6)), coverage.y);
+    return vec4f(1.0, 0.62, 0.2, overlay_coarse_edge(at.xy));
 }
 
 fn overlay_size() -> vec2f {
@@ -85,9 +79,9 @@ fn overlay_color(pixel: vec2i) -> vec4f {
     return textureLoad(picture, overlay_inside(pixel), 0);
 }
 
-// Coverage of a point by the line at the edge of the selection, and by line and rim. The edge runs where the interpolated selection
+// Coverage of a point by the edge of the selection. The edge runs where the interpolated selection
 // of the four pixels around is one half; its slope gives the distance to the edge.
-fn overlay_coarse_edge(at: vec2f) -> vec2f {
+fn overlay_coarse_edge(at: vec2f) -> f32 {
     let place = overlay_place(at);
     let corner = vec2i(floor(place));
     let share = place - floor(place);
@@ -99,12 +93,11 @@ fn overlay_coarse_edge(at: vec2f) -> vec2f {
     let slope = vec2f(mix(b - a, d - c, share.y), mix(c - a, d - b, share.x));
     let per_pixel = vec2f(f32(view.width), f32(view.height)) / overlay_size();
     let distance = abs(selected - 0.5) / max(length(slope * per_pixel), 1e-6);
-    let reach = select(2.0, 1.5, selected > 0.5);
-    return clamp(vec2f(1.5, reach) - distance, vec2f(0.0), vec2f(1.0));
+    return clamp(1.5 - distance, 0.0, 1.0);
 }
 
-// 2 for a pixel outside the selection and within two pixels of it, 1 for the next one, 0 for others.
-fn overlay_mark(pixel: vec2u) -> u32 {
+// Whether the pixel is outside the selection and within two pixels of it.
+fn overlay_is_edge(pixel: vec2u) -> bool {
     let here = overlay_is_selected(vec2i(pixel));
     var near = false;
     // A ring of radius 2 without its corners: three pixels on each of four sides. The condition
@@ -114,16 +107,7 @@ fn overlay_mark(pixel: vec2u) -> u32 {
         let side = 2 - 4 * (i / 3 % 2);
         near = overlay_is_selected(vec2i(pixel) + select(vec2i(side, along), vec2i(along, side), i < 6));
     }
-    var beside = false;
-    // A ring of radius 3, with its corners cut off.
-    for (var i = 0; i < 16 && !here && !near && !beside; i += 1) {
-        let along = i % 3 - 1;
-        let side = 3 - 6 * (i / 3 % 2);
-        let corner = 2 * vec2i(1 - 2 * (i & 1), 1 - (i & 2));
-        let place = select(vec2i(side, along), vec2i(along, side), i < 6);
-        beside = overlay_is_selected(vec2i(pixel) + select(place, corner, i >= 12));
-    }
-    return select(u32(beside), 2u, near);
+    return near;
 }
 
 fn overlay_is_selected(pixel: vec2i) -> bool {
