@@ -104,6 +104,16 @@ impl Monkey {
             .or(self.copied.take());
     }
 
+    /// Selects a node or two: with something selected more can happen.
+    fn choose(&mut self, harness: &mut Harness<'_, Editor>) {
+        let ids: Vec<_> = harness.state().document().scene().nodes().iter().map(|node| node.id).collect();
+        if !ids.is_empty() {
+            let chosen = (0..1 + self.random.below(2)).map(|_| self.random.pick(&ids)).collect();
+            harness.state_mut().document_mut().select(chosen);
+            harness.step();
+        }
+    }
+
     fn key(&mut self, harness: &mut Harness<'_, Editor>, modifiers: Modifiers) -> String {
         let key = self.random.pick(&KEYS);
         harness.key_press_modifiers(modifiers, key);
@@ -127,11 +137,7 @@ impl Monkey {
     }
 
     fn click(&mut self, harness: &mut Harness<'_, Editor>, modifiers: Modifiers) -> String {
-        let (mut pos, right) = (self.pos(), self.random.once_in(5));
-        if self.random.once_in(2) {
-            // The first rows of the outliner: with something selected more can happen.
-            pos = Pos2::new(110.0, 120.0 + 200.0 * self.random.unit() as f32);
-        }
+        let (pos, right) = (self.pos(), self.random.once_in(5));
         let button = if right { PointerButton::Secondary } else { PointerButton::Primary };
         self.button(harness, pos, true, button, modifiers);
         self.button(harness, pos, false, button, modifiers);
@@ -188,10 +194,13 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
     let first = bytes(&harness);
     let mut monkey = Monkey { random: Random::new(seed), copied: None, done: Vec::new() };
     for index in 0..events {
-        if index % 8 == 0 {
-            // Out of whatever has been opened.
+        if index % 25 == 0 {
+            // Out of whatever has been opened; that deselects, too.
             harness.key_press(Key::Escape);
             harness.step();
+        }
+        if monkey.random.once_in(4) {
+            monkey.choose(&mut harness);
         }
         monkey.act(&mut harness);
         let scene = harness.state().document().scene();
@@ -231,6 +240,7 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
         assert!(harness.state_mut().document_mut().redo(), "seed {seed}: a step is lost");
     }
     assert!(bytes(&harness) == last, "seed {seed}: {steps} steps forward is not the last document");
+    assert!(steps > 0 || events < PER_ROUND, "seed {seed}: a monkey that does nothing shows nothing");
     note(&format!("seed {seed}: {steps} steps from {events} events, {} nodes", end.nodes().len()));
     end
 }
