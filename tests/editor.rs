@@ -31,6 +31,7 @@ mod saving;
 mod scale;
 mod timeline;
 mod transforms;
+mod views;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, accesskit::Role, vec2};
 use egui_kittest::{Harness, kittest::NodeT, kittest::Queryable};
@@ -197,35 +198,6 @@ fn typing_a_value_takes_an_expression_and_is_one_step() {
     assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 6.0 }, "beyond the soft range, by typing");
     assert_eq!(undo_all(&mut harness), 1);
     assert_eq!(*harness.state().document().scene(), scene);
-}
-
-#[test]
-fn what_cannot_be_taken_as_it_is_typed_is_told() {
-    let (scene, [_, ball, ..]) = scene();
-    let mut harness = open(scene);
-    select(&mut harness, "Ball");
-    let mut told = |text: &str| {
-        let radius = field(&harness, "Radius").rect().center();
-        click(&mut harness, radius);
-        press(&mut harness, Modifiers::COMMAND, Key::A);
-        harness.event(Event::Text(text.into()));
-        harness.run();
-        press(&mut harness, Modifiers::NONE, Key::Enter);
-        harness.run();
-        let Shape::Sphere { radius } = shape(&harness, ball) else { panic!() };
-        (radius, harness.state().messages().map(|m| m.text.clone()).collect::<Vec<_>>())
-    };
-    let hard = ShapeKind::Sphere.params()[0].limits.hard;
-    assert_eq!(told("2"), (2.0, vec![]));
-    let (radius, messages) = told("ball");
-    assert_eq!((radius, &*messages[0]), (2.0, "Radius: “ball” is not a number, so it stays as it was."));
-    let (radius, messages) = told("1e30");
-    assert_eq!((radius, messages.len()), (hard[1], 2));
-    assert!(messages[1].starts_with("Radius: 1e30 is more than"), "{messages:?}");
-    let (radius, messages) = told("-1");
-    assert_eq!((radius, messages.len()), (hard[0], 3));
-    assert!(messages[2].starts_with("Radius: -1 is less than"), "{messages:?}");
-    assert_eq!(told("3").1.len(), 3);
 }
 
 #[test]

@@ -6,16 +6,13 @@ use std::collections::HashMap;
 use egui::{Id, Ui, Vec2, vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 
-use super::dock_tabs::{self, DockTabs};
+use super::dock_tabs::{self, DockTabs, GAP, LEAST, is_fixed};
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::view_state::PointerActivity;
 use isolith_document::{Docked, DockedPart, PanelLayout};
 
-/// Width of the line between panels, in points.
-pub const GAP: f32 = 1.0;
-/// Least size of a docked panel, in points, and of what the panels leave to the viewport.
-pub const LEAST: f32 = 80.0;
+/// Least size of what the panels leave to the viewport, in points.
 const LEAST_CENTER: f32 = 220.0;
 /// Width of a panel at the left without a place of its own there, and its height, in points.
 const USUAL: Vec2 = vec2(240.0, 260.0);
@@ -364,11 +361,6 @@ fn leaves(tree: &Tree<usize>, id: TileId) -> Vec<usize> {
         Some(Tile::Container(container)) => container.children().flat_map(|child| leaves(tree, *child)).collect(),
         None => Vec::new(),
     }
-}
-
-/// Whether this panel is always there.
-pub fn is_fixed(panel: &dyn Panel) -> bool {
-    panel.place() == PanelPlace::Center
 }
 
 /// Puts a panel beside one that has the same kind of place, or at the end of the window.

@@ -8,10 +8,14 @@ use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabSt
 
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, Request};
-use super::{dock, icons, theme};
+use super::{icons, theme};
 
 /// Height of a bar of tabs, in points.
 pub const BAR: f32 = 24.0;
+/// Width of the line between panels, in points.
+pub const GAP: f32 = 1.0;
+/// Least size of a docked panel, in points.
+pub const LEAST: f32 = 80.0;
 /// Size of the text of tabs, in points.
 const TEXT: f32 = 12.0;
 /// Room for the sign that closes a tab, in points.
@@ -39,11 +43,16 @@ impl<'a> DockTabs<'a> {
 
     fn is_fixed(&self, tiles: &Tiles<usize>, id: TileId) -> bool {
         match tiles.get(id) {
-            Some(Tile::Pane(index)) => dock::is_fixed(self.panels[*index].as_ref()),
+            Some(Tile::Pane(index)) => is_fixed(self.panels[*index].as_ref()),
             Some(Tile::Container(container)) => container.children().any(|child| self.is_fixed(tiles, *child)),
             None => false,
         }
     }
+}
+
+/// Whether this panel is always there.
+pub fn is_fixed(panel: &dyn Panel) -> bool {
+    panel.place() == PanelPlace::Center
 }
 
 /// Which parts of the tree are merged: each panel keeps a bar of tabs, by which it is dragged.
@@ -144,11 +153,11 @@ impl Behavior<usize> for DockTabs<'_> {
     }
 
     fn gap_width(&self, _: &Style) -> f32 {
-        dock::GAP
+        GAP
     }
 
     fn min_size(&self) -> f32 {
-        dock::LEAST
+        LEAST
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
@@ -157,7 +166,7 @@ impl Behavior<usize> for DockTabs<'_> {
 
     fn resize_stroke(&self, _: &Style, resize: ResizeState) -> Stroke {
         match resize {
-            ResizeState::Idle => Stroke::new(dock::GAP, theme::LINE),
+            ResizeState::Idle => Stroke::new(GAP, theme::LINE),
             ResizeState::Hovering | ResizeState::Dragging => Stroke::new(2.0, theme::ACCENT),
         }
     }

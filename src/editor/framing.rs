@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::bounds;
 use super::navigation::Navigation;
 use super::state::EditorState;
+use super::{bounds, camera_view};
 use isolith_field::debug_view::DepthRange;
 
 impl EditorState {
@@ -31,20 +31,21 @@ impl EditorState {
         let here = cameras.iter().position(|c| c.camera.position.distance(eye) < 1e-9 * (1.0 + eye.length()));
         let wanted = cameras.iter().find(|c| Some(&c.id) == selected && here.is_none());
         let next = here.map_or(0, |i| (i + 1) % cameras.len().max(1));
-        if let Some(camera) = wanted.or_else(|| cameras.get(next)) {
-            let camera = camera.camera;
+        if let Some(id) = wanted.or_else(|| cameras.get(next)).map(|camera| camera.id) {
             let focus = self.focus();
-            self.view.navigation.look_through(&camera, focus);
+            camera_view::look_through(self, id, focus);
         }
     }
 
     /// Sets the first view of a document: its first camera, or the whole scene.
     pub(super) fn show_as_saved(&mut self) {
         self.view.navigation = Navigation::default();
+        self.view.through = None;
         if self.derived.flat().cameras.is_empty() {
             self.frame_all();
-        } else {
-            self.look_through_camera();
+        } else if let Some(camera) = self.derived.flat().cameras.first().map(|camera| camera.camera) {
+            let focus = self.focus();
+            self.view.navigation.look_through(&camera, focus);
         }
     }
 

@@ -28,7 +28,7 @@ pub fn paint(state: &EditorState, ui: &Ui, projection: &Projection) {
         painter.text(at, align, text, font.clone(), color);
     };
     let text = format!("Grid {} {}", number_text(grid.cell / unit.meters()), unit.sign());
-    shade(rect.left_bottom() + vec2(10.0, -8.0), Align2::LEFT_BOTTOM, &text);
+    shade(rect.left_bottom() + vec2(10.0, -22.0), Align2::LEFT_BOTTOM, &text);
     if state.view.navigation.axis().is_none() {
         return;
     }
@@ -60,7 +60,7 @@ pub fn paint(state: &EditorState, ui: &Ui, projection: &Projection) {
             };
             let text = number_text(value / unit.meters());
             if is_across {
-                shade(pos2(at.x + 3.0, rect.top() + 6.0), Align2::LEFT_TOP, &text);
+                shade(pos2(at.x + 3.0, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, &text);
             } else {
                 shade(pos2(rect.left() + 58.0, at.y - 1.0), Align2::LEFT_BOTTOM, &text);
             }

@@ -23,7 +23,7 @@
 //! | `viewport_click`, `viewport_drag`, `viewport_modal`, `viewport_surface` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
-//! | `preferences_window`, `key_editor` | the window of the preferences, with the list of all keys |
+//! | `preferences_window`, `preferences_view`, `key_editor` | the window of the preferences, with the list of all keys |
 //! | `palette`, `theme`, `appearance`, `units` | colors by role, style, what the preferences say about both, units |
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
@@ -32,6 +32,7 @@
 //! | `drag_in`, `dropped_files` | what is dragged into the picture, and files dropped on the window |
 //! | `history_list` | all steps of undo |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `camera_view` | looking through a camera, its frame; bookmarks of views |
 //! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
@@ -53,6 +54,7 @@ mod arrange;
 mod arrangement;
 mod below_list;
 mod bounds;
+mod camera_view;
 mod changelog;
 mod choice_walk;
 mod choosing;
@@ -131,6 +133,7 @@ mod picking;
 mod placement;
 mod playback;
 mod portal;
+mod preferences_view;
 mod preferences_window;
 mod preset_picker;
 mod projection;

@@ -109,12 +109,8 @@ fn prefixed_number(
         refuse(ui, response.id, refusal(name, &text, field, unit));
     }
     answer.value = answer.value.map(|value| field.taken(value));
-    if let Some(value) = from_menu(ui, &response, field, value, unit) {
-        answer.value = Some(field.taken(value));
-    }
-    if let Some(value) = by_wheel(ui, &response, field, value) {
-        answer.value = Some(value);
-    }
+    let chosen = from_menu(ui, &response, field, value, unit).map(|value| field.taken(value));
+    answer.value = by_wheel(ui, &response, field, value).or(chosen).or(answer.value);
     if !field.help.is_empty() && !dragged {
         response.on_hover_text(field.help);
     }

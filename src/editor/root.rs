@@ -367,6 +367,7 @@ impl Editor {
         self.state.view.transforming = None;
         (self.state.view.entered, self.state.view.walk, self.state.view.below) = (None, None, None);
         self.state.view.isolated.clear();
+        (self.state.view.through, self.state.view.bookmarks) = (None, Default::default());
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.materials.forget();

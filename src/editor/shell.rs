@@ -2,7 +2,8 @@
 
 use egui::{CentralPanel, Frame, Margin, Ui};
 
-use super::dock::{Dock, is_fixed};
+use super::dock::Dock;
+use super::dock_tabs::is_fixed;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry};
 use super::theme;

@@ -35,6 +35,15 @@ impl Panel for Toolbar {
     }
 }
 
+/// Submenus of View.
+const SUBMENUS: [(&str, Menu); 5] = [
+    ("Bookmarks", Menu::Bookmarks),
+    ("Transform", Menu::Tool),
+    ("Orientation", Menu::Orientation),
+    ("Pivot", Menu::Pivot),
+    ("Keymap", Menu::Keymap),
+];
+
 /// Shows the bar; returns the chosen command.
 fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
     let mut chosen = None;
@@ -88,13 +97,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.menu_button("Panels", |ui| panels(state, ui));
-        let menus = [
-            ("Transform", Menu::Tool),
-            ("Orientation", Menu::Orientation),
-            ("Pivot", Menu::Pivot),
-            ("Keymap", Menu::Keymap),
-        ];
-        for (name, menu) in menus {
+        for (name, menu) in SUBMENUS {
             let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
             *chosen = inner.flatten().or(*chosen);
         }

@@ -65,6 +65,20 @@ pub struct GridView {
     pub fades: bool,
 }
 
+/// The number of bookmarks.
+pub const BOOKMARKS: usize = 4;
+
+/// A camera that one looks through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Through {
+    /// The camera.
+    pub camera: NodeId,
+    /// The view that shows it.
+    pub view: Navigation,
+    /// Height of the frame as a share of the viewport's.
+    pub share: f64,
+}
+
 /// Samples per pixel of a new view.
 const SAMPLES: u32 = 64;
 
@@ -102,6 +116,14 @@ pub enum PointerActivity {
 pub struct ViewState {
     /// The camera.
     pub navigation: Navigation,
+    /// The camera that one looks through.
+    pub through: Option<Through>,
+    /// Whether that camera moves with the view.
+    pub locks_camera: bool,
+    /// Whether its frame shows where action and titles are safe.
+    pub show_safe_areas: bool,
+    /// Views to come back to.
+    pub bookmarks: [Option<Navigation>; BOOKMARKS],
     /// The shading of the lit picture.
     pub shading: Shading,
     /// The view mode.
@@ -158,6 +180,10 @@ impl Default for ViewState {
     fn default() -> Self {
         Self {
             navigation: Navigation::default(),
+            through: None,
+            locks_camera: false,
+            show_safe_areas: false,
+            bookmarks: [None; BOOKMARKS],
             shading: Shading::default(),
             view_mode: ViewMode::Shaded,
             samples: SAMPLES,

@@ -21,7 +21,7 @@ use super::viewport_click::{click, prepare_menu, select_in_box, select_in_lasso,
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
 use super::viewport_surface::SurfaceUnderPointer;
-use super::{grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
+use super::{camera_view, grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The panel of the viewport.
@@ -137,6 +137,7 @@ impl Viewport {
         }
         take_dropped_material(state, ui, response);
         self.context_menu(state, ui, response);
+        camera_view::follow(state, response.id);
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || self.modal.is_active() || now < self.zooming_until;
         state.view.pointer = self.activity(state, ui, response);
@@ -314,6 +315,7 @@ impl Viewport {
             self.ghosts.paint(state, &painter, &projection);
             lattice_overlay::paint(state, &painter, &projection);
         }
+        camera_view::paint(state, &painter);
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);
         let pointer = response.hover_pos().filter(|_| response.hovered() || response.dragged());

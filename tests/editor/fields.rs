@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::editor::Editor;
 use isolith::scene::{Material, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind};
 
-use super::{click, field, open_tall, press, scene, select, shape, undo_all};
+use super::{click, field, open, open_tall, press, scene, select, shape, undo_all};
 
 /// Types text into the field with this name and presses Enter.
 fn type_into(harness: &mut Harness<'_, Editor>, name: &str, text: &str) {
@@ -229,4 +229,33 @@ fn mixed_texts_and_points_show_a_dash() {
         let Shape::Text { text, .. } = shape(&harness, id) else { panic!() };
         assert_eq!(text, "Both");
     }
+}
+
+#[test]
+fn what_cannot_be_taken_as_it_is_typed_is_told() {
+    let (scene, [_, ball, ..]) = scene();
+    let mut harness = open(scene);
+    select(&mut harness, "Ball");
+    let mut told = |text: &str| {
+        let radius = field(&harness, "Radius").rect().center();
+        click(&mut harness, radius);
+        press(&mut harness, Modifiers::COMMAND, Key::A);
+        harness.event(Event::Text(text.into()));
+        harness.run();
+        press(&mut harness, Modifiers::NONE, Key::Enter);
+        harness.run();
+        let Shape::Sphere { radius } = shape(&harness, ball) else { panic!() };
+        (radius, harness.state().messages().map(|m| m.text.clone()).collect::<Vec<_>>())
+    };
+    let hard = ShapeKind::Sphere.params()[0].limits.hard;
+    assert_eq!(told("2"), (2.0, vec![]));
+    let (radius, messages) = told("ball");
+    assert_eq!((radius, &*messages[0]), (2.0, "Radius: “ball” is not a number, so it stays as it was."));
+    let (radius, messages) = told("1e30");
+    assert_eq!((radius, messages.len()), (hard[1], 2));
+    assert!(messages[1].starts_with("Radius: 1e30 is more than"), "{messages:?}");
+    let (radius, messages) = told("-1");
+    assert_eq!((radius, messages.len()), (hard[0], 3));
+    assert!(messages[2].starts_with("Radius: -1 is less than"), "{messages:?}");
+    assert_eq!(told("3").1.len(), 3);
 }

@@ -104,6 +104,16 @@ impl Monkey {
             .or(self.copied.take());
     }
 
+    /// Selects a node or two: with something selected more can happen.
+    fn choose(&mut self, harness: &mut Harness<'_, Editor>) {
+        let ids: Vec<_> = harness.state().document().scene().nodes().iter().map(|node| node.id).collect();
+        if !ids.is_empty() {
+            let chosen = (0..1 + self.random.below(2)).map(|_| self.random.pick(&ids)).collect();
+            harness.state_mut().document_mut().select(chosen);
+            harness.step();
+        }
+    }
+
     fn key(&mut self, harness: &mut Harness<'_, Editor>, modifiers: Modifiers) -> String {
         let key = self.random.pick(&KEYS);
         harness.key_press_modifiers(modifiers, key);
@@ -127,11 +137,7 @@ impl Monkey {
     }
 
     fn click(&mut self, harness: &mut Harness<'_, Editor>, modifiers: Modifiers) -> String {
-        let (mut pos, right) = (self.pos(), self.random.once_in(5));
-        if self.random.once_in(2) {
-            // The first rows of the outliner: with something selected more can happen.
-            pos = Pos2::new(110.0, 120.0 + 200.0 * self.random.unit() as f32);
-        }
+        let (pos, right) = (self.pos(), self.random.once_in(5));
         let button = if right { PointerButton::Secondary } else { PointerButton::Primary };
         self.button(harness, pos, true, button, modifiers);
         self.button(harness, pos, false, button, modifiers);
@@ -188,6 +194,14 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
     let first = bytes(&harness);
     let mut monkey = Monkey { random: Random::new(seed), copied: None, done: Vec::new() };
     for index in 0..events {
+        if index % 25 == 0 {
+            // Out of whatever has been opened; that deselects, too.
+            harness.key_press(Key::Escape);
+            harness.step();
+        }
+        if monkey.random.once_in(4) {
+            monkey.choose(&mut harness);
+        }
         monkey.act(&mut harness);
         let scene = harness.state().document().scene();
         let told = || format!("seed {seed}, event {index}: {:?}", &monkey.done[monkey.done.len().saturating_sub(6)..]);
@@ -213,6 +227,11 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
         harness.key_press(Key::Escape);
         harness.run_steps(2);
     }
+    let changes = harness.state().document().revision();
+    assert!(
+        changes >= 5,
+        "seed {seed}: {changes} changes from {events} events: a monkey that does nothing shows nothing"
+    );
     let last = bytes(&harness);
     let end = Scene::clone(harness.state().document().resting());
     let document = harness.state_mut().document_mut();
@@ -230,11 +249,51 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
     end
 }
 
+/// The events of a long run, if one is asked for.
+fn long_run() -> Option<usize> {
+    std::env::var(LONG_RUN).ok().and_then(|text| text.parse().ok())
+}
+
 #[test]
 fn undo_leads_back_from_whatever_a_monkey_does() {
-    let events = std::env::var(LONG_RUN).ok().and_then(|text| text.parse().ok()).unwrap_or(SHORT_RUN);
+    let events = long_run().unwrap_or(SHORT_RUN);
     let (mut scene, _) = scene();
     for (seed, _) in (0..events).step_by(PER_ROUND).enumerate() {
         scene = round(seed as u64 + 1, scene, events.min(PER_ROUND));
+    }
+}
+
+/// Kilobytes that this process has in memory; `None` where the system does not tell.
+fn resident() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    text.split_whitespace().nth(1)?.parse::<f64>().ok().map(|pages| pages * 4.0)
+}
+
+/// Judges the memory in a long run only, which has the process for itself.
+#[test]
+fn edits_and_their_undos_leave_nothing_behind() {
+    let pairs = long_run().unwrap_or(100);
+    let (scene, [.., ring]) = scene();
+    let mut harness = open_in(Document::new(scene.clone()), WINDOW);
+    harness.state_mut().document_mut().select(vec![ring]);
+    harness.run_steps(4);
+    let mut early = None;
+    for pair in 0..pairs {
+        harness.key_press(Key::N);
+        harness.step();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.step();
+        if pair == pairs / 10 {
+            early = resident();
+        }
+    }
+    harness.run_steps(8);
+    let document = harness.state().document();
+    assert_eq!((document.undo_labels().count(), document.redo_labels().count()), (0, 1));
+    assert_eq!(*document.scene(), scene);
+    assert!(document.revision() >= 2 * pairs as u64, "each key did something: {}", document.revision());
+    if let (Some(early), Some(late), Some(_)) = (early, resident(), long_run()) {
+        note(&format!("{pairs} edits and undos: {early} KiB after a tenth of them, {late} KiB in the end"));
+        assert!(late < 1.05 * early, "{early} KiB became {late} KiB");
     }
 }

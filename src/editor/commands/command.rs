@@ -139,6 +139,14 @@ pub enum Command {
     FrameAll,
     /// Look through the scene's camera, or through the next one.
     LookThroughCamera,
+    /// Move the camera that one looks through with the view.
+    LockCamera,
+    /// Toggle the safe areas in the frame of a camera.
+    ToggleSafeAreas,
+    /// Keep the view in this bookmark.
+    SetBookmark(usize),
+    /// Show the view of this bookmark.
+    ShowBookmark(usize),
     /// Look along a world axis.
     LookFrom(Side),
     /// Switch between a perspective and an orthographic view.

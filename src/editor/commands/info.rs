@@ -35,6 +35,8 @@ pub enum Menu {
     Debug,
     /// Samples per pixel; a submenu of View.
     Samples,
+    /// Views to come back to; a submenu of View.
+    Bookmarks,
     /// Transforms, and tools of the viewport; a submenu of View.
     Tool,
     /// Axes of the tools; a submenu of View.

@@ -13,8 +13,8 @@ use crate::log_panel::LOG;
 use crate::root::Editor;
 use crate::state::{EditorState, Request};
 use crate::{
-    arrange, clipboard, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion, relations,
-    seeds, selection,
+    arrange, camera_view, clipboard, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion,
+    relations, seeds, selection,
 };
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
@@ -117,9 +117,20 @@ fn run_on_state(state: &mut EditorState, command: Command) {
             add_light(state, command);
         }
         Command::AddCamera => add_camera(state),
+        _ => run_on_view(state, command),
+    }
+}
+
+/// Runs a command on the view, the panels or the tools.
+fn run_on_view(state: &mut EditorState, command: Command) {
+    match command {
         Command::FrameSelected => state.frame_selected(),
         Command::FrameAll => state.frame_all(),
         Command::LookThroughCamera => state.look_through_camera(),
+        Command::LockCamera => state.view.locks_camera ^= true,
+        Command::ToggleSafeAreas => state.view.show_safe_areas ^= true,
+        Command::SetBookmark(index) => camera_view::set_bookmark(state, index),
+        Command::ShowBookmark(index) => camera_view::show_bookmark(state, index),
         Command::LookFrom(side) => state.view.navigation.look_along(side),
         Command::ToggleOrthographic => state.view.navigation.toggle_orthographic(),
         Command::ToggleGrid => state.view.show_grid ^= true,
@@ -135,16 +146,8 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::CycleShading => state.view.cycle_shading(),
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
-        Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::ShowHelp | Command::ShowKeys | Command::ShowNews | Command::StartTour | Command::ShowWelcome => {}
-        Command::Quit
-        | Command::Render
-        | Command::ExamineScene
-        | Command::AddAtPointer
-        | Command::AddMesh
-        | Command::FindCommand
-        | Command::Preferences => {}
-        Command::Copy | Command::Cut | Command::Paste => {}
+        // Those of a window in front or a file.
+        _ => {}
     }
 }
 

@@ -3,13 +3,14 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_DASHBOARD, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST,
-    ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_VIEW_IN_AR,
+    ICON_BOOKMARK, ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_CROP_FREE, ICON_DASHBOARD, ICON_FIT_SCREEN,
+    ICON_GRID_ON, ICON_LIST, ICON_LOCK, ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_VIEW_IN_AR,
 };
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::navigation::Side;
+use crate::view_state::BOOKMARKS;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 
@@ -32,6 +33,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .key(NONE, Key::Num0)
             .when(|state| !state.flat().cameras.is_empty()),
     ];
+    all.extend(cameras());
     let sides = [
         ("Front view", Side::Front, NONE, Key::Num1),
         ("Back view", Side::Back, Modifiers::COMMAND, Key::Num1),
@@ -45,28 +47,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = CommandInfo::new(Menu::View, Command::LookFrom(side), None, label, help).key(modifiers, key);
         all.push(if index == 0 { info.group() } else { info });
     }
-    all.extend([
-        row(
-            Command::ToggleOrthographic,
-            ICON_VIEW_IN_AR,
-            "Orthographic",
-            "Parallel lines stay parallel, or meet far away",
-        )
-        .key(NONE, Key::Num5)
-        .switch(|state, _| state.view.navigation.orthographic)
-        .group(),
-        row(Command::ToggleGrid, ICON_GRID_ON, "Grid", "Shows or hides the grid")
-            .switch(|state, _| state.view.show_grid),
-        row(Command::ToggleOutline, ICON_SELECT, "Selection outline", "Shows or hides what marks the selection")
-            .switch(|state, _| state.view.show_outline),
-        row(Command::Play, ICON_PLAY_ARROW, "Play", "Plays the timeline, or pauses").key(NONE, Key::Space).group(),
-        row(Command::FindCommand, ICON_SEARCH, "Find command…", "Every command by its name")
-            .key(NONE, Key::F3)
-            .key(Modifiers::COMMAND, Key::P)
-            .group(),
-        row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
-        row(Command::ResetLayout, ICON_DASHBOARD, "Reset layout", "Puts all panels back into their usual places"),
-    ]);
+    all.extend(shown());
     all.extend(Shading::ALL.into_iter().map(|shading| {
         let label = format!("Shading: {}", shading.label());
         CommandInfo::new(Menu::Shading, Command::ShowShading(shading), None, label, shading.help())
@@ -87,6 +68,59 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let label = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
         CommandInfo::new(Menu::Samples, Command::Samples(samples), None, label, SAMPLES)
             .switch(|state, command| command == Command::Samples(state.view.samples))
+    }));
+    all
+}
+
+/// What the viewport shows besides the scene, playback, and the windows in front.
+fn shown() -> Vec<CommandInfo> {
+    const NONE: Modifiers = Modifiers::NONE;
+    vec![
+        row(
+            Command::ToggleOrthographic,
+            ICON_VIEW_IN_AR,
+            "Orthographic",
+            "Parallel lines stay parallel, or meet far away",
+        )
+        .key(NONE, Key::Num5)
+        .switch(|state, _| state.view.navigation.orthographic)
+        .group(),
+        row(Command::ToggleGrid, ICON_GRID_ON, "Grid", "Shows or hides the grid")
+            .switch(|state, _| state.view.show_grid),
+        row(Command::ToggleOutline, ICON_SELECT, "Selection outline", "Shows or hides what marks the selection")
+            .switch(|state, _| state.view.show_outline),
+        row(Command::Play, ICON_PLAY_ARROW, "Play", "Plays the timeline, or pauses").key(NONE, Key::Space).group(),
+        row(Command::FindCommand, ICON_SEARCH, "Find command…", "Every command by its name")
+            .key(NONE, Key::F3)
+            .key(Modifiers::COMMAND, Key::P)
+            .group(),
+        row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
+        row(Command::ResetLayout, ICON_DASHBOARD, "Reset layout", "Puts all panels back into their usual places"),
+    ]
+}
+
+/// The camera that one looks through, and bookmarks of views.
+fn cameras() -> Vec<CommandInfo> {
+    let lock = "The camera that you look through moves with the view";
+    let safe = "Where action and titles are safe, in the frame of the camera that you look through";
+    let mut all = vec![
+        row(Command::LockCamera, ICON_LOCK, "Lock camera to view", lock)
+            .switch(|state, _| state.view.locks_camera)
+            .when(|state| state.view.through.is_some() || state.view.locks_camera),
+        row(Command::ToggleSafeAreas, ICON_CROP_FREE, "Safe areas", safe).switch(|state, _| state.view.show_safe_areas),
+    ];
+    let keys = [Key::F5, Key::F6, Key::F7, Key::F8];
+    let bookmark = |command, label: String, help, modifiers, key| {
+        CommandInfo::new(Menu::Bookmarks, command, Icon::from(ICON_BOOKMARK), label, help).key(modifiers, key)
+    };
+    all.extend(keys.into_iter().take(BOOKMARKS).enumerate().map(|(index, key)| {
+        let label = format!("Bookmark {}", index + 1);
+        bookmark(Command::ShowBookmark(index), label, "Shows the view that was kept", Modifiers::NONE, key)
+    }));
+    all.extend(keys.into_iter().take(BOOKMARKS).enumerate().map(|(index, key)| {
+        let label = format!("Set bookmark {}", index + 1);
+        let info = bookmark(Command::SetBookmark(index), label, "Keeps the view", Modifiers::SHIFT, key);
+        if index == 0 { info.group() } else { info }
     }));
     all
 }
