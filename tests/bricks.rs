@@ -202,7 +202,7 @@ fn cells_without_entries_lie_on_their_side_and_far_from_the_surface() {
         for _ in 0..60 {
             let cell = cells.map(|n| dice.below(n as usize) as u32);
             let Some(is_inside) = bricks.side(cell) else { continue };
-            let inner = DVec3::new(dice.unit(), dice.unit(), dice.unit()) * f64::from(CELL_VOXELS) * bricks.voxel();
+            let inner = dice.point() * f64::from(CELL_VOXELS) * bricks.voxel();
             let p = bricks.grid.corner(cell) + inner;
             let exact = soup.distance(p);
             assert!(exact >= (BAND - 0.5) * bricks.voxel(), "{name}: {exact} at {p}");

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
 
-use isolith::field::{FlatScene, GBuffer, flatten};
+use isolith::field::{FlatScene, GBuffer};
 use isolith::geometry::Camera;
-use isolith::mesh::{MeshLibrary, TriangleMesh};
+use isolith::jobs::Task;
+use isolith::mesh::TriangleMesh;
 use isolith::render::{EvalStrategy, Gpu, Renderer};
 use isolith::scene::{Scene, file};
+use isolith::session::PreparedScene;
 
 /// The device and its renderers.
 pub struct Shared {
@@ -39,8 +41,12 @@ pub struct BenchScene {
 impl BenchScene {
     /// A scene without a file, in its default view, for a square picture.
     pub fn new(name: &str, scene: &Scene, folder: Option<PathBuf>) -> Self {
-        let flat = flatten(scene, 0.0).unwrap_or_else(|error| panic!("{name}: {error:?}"));
-        let (meshes, missing) = flat.load_meshes(&mut MeshLibrary::new(folder));
+        let prepared = PreparedScene::of(scene, 0.0, folder, &Task::new("Preparing"));
+        let prepared = prepared.unwrap_or_else(|error| panic!("{name}: {error:?}"));
+        let mut prepared = prepared.expect("nobody cancels");
+        assert!(prepared.warnings_of_fields().is_empty(), "{name}: {:?}", prepared.warnings_of_fields());
+        let flat = FlatScene::clone(&prepared.flat);
+        let (meshes, missing) = flat.load_meshes(&mut prepared.library);
         assert!(missing.is_empty(), "{name}: {missing:?}");
         let camera = flat.default_camera(&meshes, 1.0);
         Self { name: name.into(), flat, meshes, camera }

@@ -12,41 +12,43 @@ const CELL_INSIDE: u32 = 0xfffffffeu;
 const LEVEL_ROWS: u32 = 3u;
 
 fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let head = scene_row(data + 1u);
-    let levels = u32(head.x);
-    let finest = mesh_field_level(p, data + 2u);
-    var best = abs(finest) * (1.0 / head.y);
-    var reached = abs(finest) >= scene_row(data + 4u).z;
+    let levels = u32(scene_row(data + 1u).x);
+    var row = data + 2u;
+    let finest = mesh_field_level(p, row);
+    var best = finest.x;
+    var reached = finest.y;
     for (var level = 1u; level < levels; level += 1u) {
-        if !reached {
+        if abs(reached) < SAMPLE_REACH {
             break;
         }
-        let row = data + 2u + LEVEL_ROWS * level;
-        let limits = scene_row(row + 2u);
-        let value = abs(mesh_field_level(p, row));
-        best = max(best, value - limits.y);
-        reached = value >= limits.z;
+        row += LEVEL_ROWS;
+        let coarser = mesh_field_level(p, row);
+        best = max(best, coarser.x);
+        reached = coarser.y;
     }
-    return select(best, -best, finest < 0.0);
+    return select(best, -best, finest.y < 0.0);
 }
 
-// What the samples of a level say at a point, in meters.
-fn mesh_field_level(p: vec3f, row: u32) -> f32 {
+// A lower bound of the distance by the samples of a level, in meters; and what they tell, in voxels.
+fn mesh_field_level(p: vec3f, row: u32) -> vec2f {
     let place = scene_row(row);
     let size = scene_row(row + 1u);
+    let limits = scene_row(row + 2u);
     let voxel = place.w;
     let at = (p - place.xyz) * (1.0 / voxel);
     let within = clamp(at, vec3f(0.0), size.xyz * CELL_VOXELS);
-    let value = mesh_field_within(within, size, u32(scene_row(row + 2u).x)) * voxel;
+    let raw = mesh_field_within(within, size, u32(limits.x));
+    let value = (abs(raw) * voxel - limits.y) * limits.w;
     let beside = (at - within) * voxel;
     let beyond = dot(beside, beside);
     if beyond > 0.0 {
-        return sqrt(beyond + value * value);
+        let rest = max(value, 0.0);
+        return vec2f(sqrt(beyond + rest * rest), raw);
     }
-    return value;
+    return vec2f(value, raw);
 }
 
-// The same at a point within the grid, both in voxels, from the origin of the grid.
+// What samples tell at a point within the grid, both in voxels, from the origin of the grid.
 fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
     let counts = vec3u(size.xyz);
     let cell = min(vec3u(at * (1.0 / CELL_VOXELS)), counts - 1u);

@@ -4,8 +4,9 @@
 //! four times as large. Together they are one continuous field, a lower bound of the distance to the surface of the
 //! finest:
 //!
-//! - of the finest, the interpolated distance over its greatest slope anywhere, exact in sign and zeros;
+//! - of the finest, the interpolated distance, exact in sign and zeros;
 //! - of the others, the interpolated distance less [`BrickLevels::error`];
+//! - each over its greatest slope anywhere, so that the slope of the field is at most 1;
 //! - the greatest of these.
 //!
 //! A level whose samples do not reach their end is greater than all coarser ones, so these need no look.

@@ -15,10 +15,12 @@ use crate::bench::{
 };
 use crate::export::outputs::write_bytes;
 use crate::gallery;
+use crate::jobs::Task;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
 use crate::render::{EvalStrategy, Gpu, Renderer};
-use crate::scene::file;
+use crate::scene::{Scene, file};
+use crate::session::ModelFields;
 use crate::wgsl::Quality;
 
 /// Smallest and largest side of a measured picture, in pixels.
@@ -196,18 +198,29 @@ fn bench_scenes(arguments: &BenchArguments) -> Result<Vec<BenchScene>, Failure> 
         let examples = Path::new("scenes");
         let mut library = MeshLibrary::new(examples.is_dir().then(|| examples.to_path_buf()));
         let all = gallery::all().into_iter();
-        return all.map(|(name, scene)| BenchScene::new(name, scene, &mut library).map_err(failed)).collect();
+        let bench_scene = |(name, scene): (&str, Scene)| {
+            BenchScene::new(name, with_fields(&scene, &mut library), &mut library).map_err(failed)
+        };
+        return all.map(bench_scene).collect();
     }
     let load = |path: &PathBuf| {
         let scene = file::load(path).map_err(Failure::Scene)?;
         let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let mut library = MeshLibrary::new(path.parent().map(Path::to_path_buf));
+        let scene = with_fields(&scene, &mut library);
         BenchScene::new(&name, scene, &mut library).map_err(|error| match error {
             BenchError::Scene(error) => Failure::beyond_limit(path, &error),
             error => failed(error),
         })
     };
     arguments.scenes.iter().map(load).collect()
+}
+
+/// The scene with its models as fields.
+fn with_fields(scene: &Scene, library: &mut MeshLibrary) -> Scene {
+    let mut fields = ModelFields::new(library.folder().map(Path::to_path_buf));
+    fields.make_all(&scene.model_requests(), library, &Task::new("Making bricks"));
+    fields.filled(scene).into_owned()
 }
 
 fn write(folder: &Path, bench: &Bench, rows: &[BenchRow], grown: bool) -> Result<(), Failure> {

@@ -98,7 +98,8 @@ impl Stills {
         let prepared = self.prepared_at(time, task)?;
         let flat = Arc::clone(&prepared.flat);
         let (meshes, missing) = flat.load_meshes(&mut prepared.library);
-        let warnings = flat.warnings.iter().cloned().chain(missing).collect();
+        let refused = prepared.warnings_of_fields();
+        let warnings = flat.warnings.iter().cloned().chain(missing).chain(refused).collect();
         let (camera, lens) = choose_camera(&flat, &meshes, &settings)?;
         let film = with_lens(settings.film, lens, &camera, settings.size[1])?;
         let flat = flat.shaded(settings.shading);

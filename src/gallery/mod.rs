@@ -5,6 +5,7 @@
 
 mod blend_kernels;
 mod boolean_operations;
+mod character;
 mod chess_pawn;
 mod chessboard;
 mod crowds;
@@ -79,6 +80,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("ocean", instancing::ocean()),
         ("city", instancing::city()),
         ("asteroids", instancing::asteroids()),
+        ("character", character::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use isolith_scene::file::{self, FileError};
-use isolith_scene::{NodeKind, Scene};
+use isolith_scene::{Node, NodeKind, Scene};
 
 /// Every model of the examples: its path beside the scene, and its bytes.
 const MODELS: &[(&str, &[u8])] = &[("models/suzanne.glb", include_bytes!("models/suzanne.glb"))];
@@ -35,9 +35,10 @@ pub fn install(name: &str, scene: &Scene, folder: &Path) -> Result<PathBuf, File
     file::save(scene, &path).map(|()| path)
 }
 
-/// Whether a mesh of the scene has this path.
+/// Whether a mesh of the scene has this path, or the field of one.
 fn shows(scene: &Scene, model: &str) -> bool {
-    scene.nodes().iter().any(|node| matches!(&node.kind, NodeKind::Mesh(mesh) if mesh.path == model))
+    let is_mesh = |node: &Node| matches!(&node.kind, NodeKind::Mesh(mesh) if mesh.path == model);
+    scene.nodes().iter().any(|node| is_mesh(node)) || scene.model_requests().iter().any(|request| request.path == model)
 }
 
 #[cfg(test)]

@@ -85,7 +85,7 @@ impl Arrays {
             self.take(result);
         } else {
             let flattener = std::mem::take(&mut self.flattener);
-            self.job = Some(flatten_by_job(jobs, scene, time, flattener));
+            self.job = Some(flatten_by_job(jobs, Arc::new(scene.into_owned()), time, flattener));
         }
     }
 

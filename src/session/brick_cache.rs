@@ -114,12 +114,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cache = cache(folder.path());
         assert_eq!(cache.load(key(1)), Ok(None));
-        cache.store(key(1), &placeholder()).unwrap();
-        assert!(cache.load(key(1)).unwrap().unwrap() == *placeholder());
+        cache.store(key(1), placeholder().finest()).unwrap();
+        assert!(cache.load(key(1)).unwrap().unwrap() == *placeholder().finest());
         assert_eq!(cache.load(key(2)), Ok(None));
         // Without a folder there is no cache, which is no problem.
         let none = BrickCache::new(None);
-        assert_eq!((none.store(key(1), &placeholder()), none.load(key(1))), (Ok(()), Ok(None)));
+        assert_eq!((none.store(key(1), placeholder().finest()), none.load(key(1))), (Ok(()), Ok(None)));
         // The file of other contents under this name.
         fs::copy(file_of(folder.path(), 1), file_of(folder.path(), 2)).unwrap();
         assert!(cache.load(key(2)).unwrap_err().contains("other contents"));
@@ -129,7 +129,7 @@ mod tests {
     fn files_that_are_cut_changed_or_foreign_are_never_bricks() {
         let folder = tempfile::tempdir().unwrap();
         let cache = cache(folder.path());
-        cache.store(key(1), &placeholder()).unwrap();
+        cache.store(key(1), placeholder().finest()).unwrap();
         let path = file_of(folder.path(), 1);
         let good = fs::read(&path).unwrap();
         let refused = |bytes: &[u8], what: &str| {
@@ -155,7 +155,7 @@ mod tests {
         assert!(refused(b"a text", "foreign").contains("not a file of bricks"));
         assert!(refused(&[good.clone(), vec![0; 16]].concat(), "longer").contains("bytes instead of"));
         // It is written anew.
-        cache.store(key(1), &placeholder()).unwrap();
+        cache.store(key(1), placeholder().finest()).unwrap();
         assert!(cache.load(key(1)).unwrap().is_some());
     }
 
@@ -163,28 +163,28 @@ mod tests {
     fn a_folder_that_cannot_be_written_is_a_reason_and_no_more() {
         let folder = tempfile::tempdir().unwrap();
         let full = BrickCache { write: |_, _| Err("no space left".into()), ..cache(folder.path()) };
-        assert_eq!(full.store(key(1), &placeholder()), Err("no space left".into()));
+        assert_eq!(full.store(key(1), placeholder().finest()), Err("no space left".into()));
         assert_eq!(full.load(key(1)), Ok(None));
         // A file stands where the folder should.
         let blocked = tempfile::tempdir().unwrap();
         fs::write(blocked.path().join(CACHE_FOLDER), "mine").unwrap();
-        assert!(cache(blocked.path()).store(key(1), &placeholder()).is_err());
+        assert!(cache(blocked.path()).store(key(1), placeholder().finest()).is_err());
         assert_eq!(cache(blocked.path()).load(key(1)), Ok(None));
         assert_eq!(fs::read(blocked.path().join(CACHE_FOLDER)).unwrap(), b"mine");
         let gone = cache(&folder.path().join("gone"));
-        assert!(gone.store(key(1), &placeholder()).is_err());
+        assert!(gone.store(key(1), placeholder().finest()).is_err());
     }
 
     #[test]
     fn the_oldest_files_go_and_others_stay() {
         let folder = tempfile::tempdir().unwrap();
-        let size = to_bytes(&placeholder(), key(0)).len() as u64;
+        let size = to_bytes(placeholder().finest(), key(0)).len() as u64;
         let cache = BrickCache { most_bytes: 3 * size, ..cache(folder.path()) };
         fs::create_dir(folder.path().join(CACHE_FOLDER)).unwrap();
         let foreign = folder.path().join(CACHE_FOLDER).join("mine.bricks");
         fs::write(&foreign, vec![1; 100]).unwrap();
         for n in 0..5 {
-            cache.store(key(n), &placeholder()).unwrap();
+            cache.store(key(n), placeholder().finest()).unwrap();
             let old = SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1_000 + n);
             File::options().append(true).open(file_of(folder.path(), n)).unwrap().set_modified(old).unwrap();
             if n == 2 {

@@ -111,11 +111,6 @@ impl BrickLibrary {
         self.get(key).or_else(|| other().map(|(_, known)| known.result.clone()))
     }
 
-    /// A number that changes whenever bricks are made or forgotten.
-    pub fn revision(&self) -> u64 {
-        self.revision
-    }
-
     /// Whether bricks are being made.
     pub fn is_under_way(&self) -> bool {
         self.making.is_some()

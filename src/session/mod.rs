@@ -28,6 +28,7 @@ mod render_order;
 mod scene_cost;
 mod studio;
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -140,7 +141,7 @@ impl SceneSession {
     }
 
     /// A scene with the bricks of its models, where they are made.
-    pub fn filled(&self, scene: &Arc<Scene>) -> Arc<Scene> {
+    pub fn filled<'a>(&self, scene: &'a Scene) -> Cow<'a, Scene> {
         self.fields.filled(scene)
     }
 

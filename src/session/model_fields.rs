@@ -1,5 +1,6 @@
 //! The shapes of a scene that are made of models, with bricks in voxels of several sizes.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -73,12 +74,12 @@ impl ModelFields {
         }
     }
 
-    /// The scene with the bricks of its models, where they are made; shared if it has none.
-    pub fn filled(&self, scene: &Arc<Scene>) -> Arc<Scene> {
+    /// The scene with the bricks of its models, where they are made.
+    pub fn filled<'a>(&self, scene: &'a Scene) -> Cow<'a, Scene> {
         if self.levels.is_empty() {
-            return Arc::clone(scene);
+            return Cow::Borrowed(scene);
         }
-        Arc::new(scene.with_bricks(&|request| self.levels.get(&key_of(request)).cloned()))
+        Cow::Owned(scene.with_bricks(&|request| self.levels.get(&key_of(request)).cloned()))
     }
 
     /// The nodes whose bricks cannot be made, and why.

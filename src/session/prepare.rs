@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::model_fields::ModelFields;
-use isolith_field::{FlatScene, FlattenError, Flattener};
+use isolith_field::{FlatScene, FlattenError, Flattener, Warning};
 use isolith_jobs::Task;
 use isolith_mesh::{MeshLibrary, ModelPose};
 use isolith_scene::Scene;
@@ -21,6 +21,8 @@ pub struct PreparedScene {
     pub library: MeshLibrary,
     /// The models that are fields.
     pub fields: ModelFields,
+    /// Nodes whose models are no fields.
+    refused: Vec<Warning>,
     /// The flattener of the arrays, for updates after small changes.
     pub(super) flattener: Flattener,
 }
@@ -31,12 +33,7 @@ impl PreparedScene {
     ///
     /// # Errors
     /// The scene is beyond a limit.
-    pub fn of(
-        scene: &Arc<Scene>,
-        time: f64,
-        folder: Option<PathBuf>,
-        task: &Task,
-    ) -> Result<Option<Self>, FlattenError> {
+    pub fn of(scene: &Scene, time: f64, folder: Option<PathBuf>, task: &Task) -> Result<Option<Self>, FlattenError> {
         let mut library = MeshLibrary::new(folder.clone());
         let mut fields = ModelFields::new(folder);
         if !fields.make_all(&scene.model_requests(), &mut library, task) {
@@ -50,7 +47,7 @@ impl PreparedScene {
     /// # Errors
     /// As [`Self::of`].
     pub fn without_fields(
-        scene: &Arc<Scene>,
+        scene: &Scene,
         time: f64,
         folder: Option<PathBuf>,
         task: &Task,
@@ -59,7 +56,7 @@ impl PreparedScene {
     }
 
     fn with(
-        scene: &Arc<Scene>,
+        scene: &Scene,
         time: f64,
         (mut library, fields): (MeshLibrary, ModelFields),
         task: &Task,
@@ -70,14 +67,27 @@ impl PreparedScene {
         task.set_progress(FLATTENED);
         let poses: Vec<_> = flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
         let is_whole = read_models(&poses, &mut library, task, FLATTENED);
-        Ok(is_whole.then_some(Self { flat, library, fields, flattener }))
+        let refused = fields.problems(scene).filter_map(|(node, reason)| {
+            Some(Warning {
+                node,
+                name: scene.node(node)?.name.clone(),
+                reason: format!("is shown as a placeholder: {reason}"),
+            })
+        });
+        let refused = refused.collect();
+        Ok(is_whole.then_some(Self { flat, library, fields, refused, flattener }))
+    }
+
+    /// Why models are no fields, as warnings about their nodes, and what was noticed while they were made.
+    pub fn warnings_of_fields(&self) -> Vec<Warning> {
+        self.refused.clone()
     }
 
     /// Prepares the same scene at another moment, which costs what has changed; false if the task was canceled.
     ///
     /// # Errors
     /// The scene is beyond a limit.
-    pub fn advance(&mut self, scene: &Arc<Scene>, time: f64, task: &Task) -> Result<bool, FlattenError> {
+    pub fn advance(&mut self, scene: &Scene, time: f64, task: &Task) -> Result<bool, FlattenError> {
         let scene = self.fields.filled(scene);
         let Some(flat) = self.flattener.flatten_until(&scene, time, task.flag())? else { return Ok(false) };
         self.flat = flat;

@@ -1,7 +1,7 @@
 //! The field of distance bricks, see `isolith_bricks` for their texels and for why it is a lower bound. Rows of the
-//! payload: the number of levels, the greatest slope of the finest, and a number that says which bricks they are. Then
-//! for each level: origin of the voxels and their size; cells along each axis, first texel; the first texel of samples
-//! after that one, how much it may exceed the distance, the greatest distance of its samples.
+//! payload: the number of levels, and a number that says which bricks they are. Then for each level: origin of the voxels
+//! and their size; cells along each axis, first texel; the first texel of samples after that one, how much it may exceed
+//! the distance in meters, the greatest distance of its samples in voxels, one over its greatest slope.
 
 use super::Real;
 use super::sdf::{Data, length3};
@@ -10,42 +10,40 @@ use isolith_bricks::{BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, SAMPL
 /// Rows of a level.
 const LEVEL_ROWS: usize = 3;
 
-/// A model; a lower bound of the distance to where the interpolation of its finest samples is 0.
+/// A model; a lower bound of the distance to where the interpolation of its finest samples is 0. Its slope is at most 1.
 pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
-    let [levels, slope, ..] = data.row(1);
-    let finest = mesh_field_level(p, data, 2);
-    let is_inside = finest.value() < 0.0;
-    let mut best = finest.abs() * (1.0 / slope);
-    let mut reached = finest.value().abs() >= data.row(4)[2];
-    for level in 1..levels as usize {
-        if !reached {
-            break;
-        }
-        let row = 2 + LEVEL_ROWS * level;
-        let [_, error, reach, _] = data.row(row + 2);
-        let value = mesh_field_level(p, data, row).abs();
-        best = best.max(value - error);
-        reached = value.value() >= reach;
+    let levels = data.row(1)[0] as usize;
+    let (mut best, mut level, is_inside) = mesh_field_level(p, data, 0);
+    while let Some(next) = level.filter(|next| *next < levels) {
+        let (value, after, _) = mesh_field_level(p, data, next);
+        (best, level) = (best.max(value), after);
     }
     if is_inside { -best } else { best }
 }
 
-/// What the samples of a level say at a point, in meters.
+/// A lower bound of the distance by the samples of a level, in meters; the next level if these samples reach no farther;
+/// and whether the point is inside.
 ///
 /// Outside of the grid the distance to the grid and that from there on are the sides of a right triangle or of an obtuse
 /// one, since the grid is convex and holds the surface.
-fn mesh_field_level<T: Real>(p: [T; 3], data: Data<'_>, row: usize) -> T {
+fn mesh_field_level<T: Real>(p: [T; 3], data: Data<'_>, level: usize) -> (T, Option<usize>, bool) {
+    let row = 2 + LEVEL_ROWS * level;
     let [x, y, z, voxel] = data.row(row);
     let size = data.row(row + 1);
+    let [_, error, reach, over_slope] = data.row(row + 2);
     let at = [(p[0] - x) * (1.0 / voxel), (p[1] - y) * (1.0 / voxel), (p[2] - z) * (1.0 / voxel)];
     let most = [0, 1, 2].map(|i| T::constant(size[i] * f64::from(CELL_VOXELS)));
     let within = [0, 1, 2].map(|i| at[i].max(T::constant(0.0)).min(most[i]));
-    let value = mesh_field_within(within, data, row) * voxel;
+    let raw = mesh_field_within(within, data, row);
+    let next = (raw.value().abs() >= reach).then_some(level + 1);
+    let value = (raw.abs() * voxel - error) * over_slope;
     let beside = [0, 1, 2].map(|i| (at[i] - within[i]) * voxel);
-    if beside.iter().all(|v| v.value() == 0.0) { value } else { length3([length3(beside), value, T::constant(0.0)]) }
+    let is_within = beside.iter().all(|v| v.value() == 0.0);
+    let value = if is_within { value } else { length3([length3(beside), value.positive(), T::constant(0.0)]) };
+    (value, next, raw.value() < 0.0)
 }
 
-/// The same at a point within the grid, both in voxels, from the origin of the grid.
+/// The distance that samples tell at a point within the grid, both in voxels, from the origin of the grid.
 fn mesh_field_within<T: Real>(at: [T; 3], data: Data<'_>, row: usize) -> T {
     let [nx, ny, nz, first] = data.row(row + 1);
     let counts = [nx, ny, nz];

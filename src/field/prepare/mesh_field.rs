@@ -11,7 +11,7 @@ const FIRST_TEXEL: usize = 1;
 /// The rows of bricks whose first texel is 0.
 pub fn mesh_field(levels: &BrickLevels) -> PreparedParams {
     let marks = levels.all().iter().fold(0, |marks, bricks| (marks * 31 + bricks.mark()) & 0xff_ffff);
-    let mut rows = vec![[levels.all().len() as f64, levels.finest().slope(), f64::from(marks), 0.0]];
+    let mut rows = vec![[levels.all().len() as f64, f64::from(marks), 0.0, 0.0]];
     let mut first = 0;
     for (level, bricks) in levels.all().iter().enumerate() {
         let error = if level == 0 { 0.0 } else { levels.error(level) };
@@ -26,7 +26,11 @@ fn level_rows(bricks: &Bricks, first: usize, error: f64) -> [[f64; 4]; LEVEL_ROW
     let [x, y, z] = bricks.grid.origin.to_array();
     let [nx, ny, nz] = bricks.grid.cells.map(f64::from);
     let voxel = bricks.grid.voxel;
-    [[x, y, z, voxel], [nx, ny, nz, first as f64], [f64::from(bricks.first_brick), error, SAMPLE_REACH * voxel, 0.0]]
+    [
+        [x, y, z, voxel],
+        [nx, ny, nz, first as f64],
+        [f64::from(bricks.first_brick), error, SAMPLE_REACH, 1.0 / bricks.slope()],
+    ]
 }
 
 /// Calls `row` for each row of the payload whose last number is a first texel, counted from that of the finest level.
