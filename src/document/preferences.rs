@@ -209,7 +209,7 @@ mod tests {
     fn a_damaged_file_is_told_and_kept_beside_the_new_one() {
         let folder = tempfile::tempdir().unwrap();
         let store = folder.path().join("preferences.json");
-        for damaged in ["{", r#"{ "scale": "large" }"#, "[]"] {
+        for damaged in ["{", r#"{ "scale": "large" }"#, "7"] {
             fs::write(&store, damaged).unwrap();
             let mut preferences = Preferences::load_from(&store);
             assert_eq!(*preferences.values(), PreferenceValues::default());

@@ -63,6 +63,9 @@ impl Dock {
             let panel = self.panels[index].as_ref();
             tree.set_visible(id, is_fixed(panel) || !layout.closed.iter().any(|closed| closed == panel.id()));
         }
+        for (id, _) in tree.tiles.iter().filter(|(_, tile)| tile.is_container()) {
+            sizes.entry(*id).or_insert(0.0);
+        }
         (self.tree, self.sizes) = (tree, sizes);
     }
 
@@ -236,6 +239,9 @@ impl Dock {
     /// A row or column that a drop has put around a part is as large as that part was; the last part of one that goes
     /// is as large as it was.
     fn inherit_sizes(&mut self) {
+        if let Some(root) = self.tree.root() {
+            self.sizes.entry(root).or_insert(0.0);
+        }
         let linears = self.tree.tiles.iter().filter_map(|(id, tile)| match tile {
             Tile::Container(Container::Linear(linear)) => Some((*id, linear.children.clone())),
             _ => None,
@@ -243,7 +249,7 @@ impl Dock {
         for (id, children) in linears.collect::<Vec<_>>() {
             if let ([only], Some(size)) = (&*children, self.sizes.get(&id)) {
                 self.sizes.insert(*only, *size);
-            } else if !self.sizes.contains_key(&id) && self.tree.root() != Some(id) {
+            } else if !self.sizes.contains_key(&id) {
                 let sizes = children.iter().filter_map(|child| self.sizes.remove(child));
                 let size = sizes.fold(0.0, f32::max);
                 self.sizes.insert(id, size);

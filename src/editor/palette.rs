@@ -127,15 +127,15 @@ palette! {
     /// Normal text.
     TEXT = 0xd4d8df, 0x23272e;
     /// Labels and hints.
-    WEAK = 0x9298a4, 0x535a67;
+    WEAK = 0x969ca8, 0x535a67;
     /// Text of what is hidden or unused, and controls at rest.
-    FAINT = 0x7f8592, 0x636a77;
+    FAINT = 0x8a909d, 0x636a77;
     /// Switches of rows without the pointer.
     RESTING = 0x454a55, 0xa4a9b4;
     /// Parameters that change with time.
     ANIMATED = 0x7ec888, 0x1c7434;
     /// Keys at the moment that is shown, and selected keys.
-    KEYED = 0xf4c860, 0x8a6000;
+    KEYED = 0xf4c860, 0x805800;
     /// Errors.
     ERROR = 0xf07068, 0xb3261e;
     /// Warnings.

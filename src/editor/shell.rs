@@ -161,7 +161,7 @@ mod tests {
         assert!(alone.top() < 60.0 && same == c, "{alone} {same} {c}");
         harness.state_mut().0.toggle("b");
         let [None, None, Some(wide), ..] = places(&mut harness, &shown, ids) else { panic!("two are hidden") };
-        assert!(wide.left() < 5.0, "{wide}");
+        assert!(wide.left() < 12.0, "{wide}");
         harness.state_mut().0.toggle("b");
         harness.state_mut().0.toggle("l");
         assert_eq!(places(&mut harness, &shown, ids), [Some(l), Some(b), Some(c), Some(r), Some(low)], "as it was");

@@ -237,7 +237,8 @@ mod tests {
         let mut said = Vec::new();
         for (second, progress) in [(0.0, 0.1), (1.0, 0.2), (3.0, 0.4), (6.0, 0.4), (7.0, 0.05)] {
             let input = egui::RawInput { time: Some(second), ..Default::default() };
-            let _ = ctx.run_ui(input, |ui| said.push(time_left(ui, "work", progress)));
+            let mut output = ctx.run_ui(input, |ui| said.push(time_left(ui, "work", progress)));
+            output.textures_delta.clear();
         }
         let said: Vec<_> = said.iter().map(Option::as_deref).collect();
         assert_eq!(said, [None, None, Some("about 6 s left"), Some("about 12 s left"), None]);
