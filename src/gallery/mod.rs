@@ -27,6 +27,7 @@ mod sculptures;
 mod shadows;
 mod shapes;
 mod showcase;
+mod statues;
 mod templates;
 mod textures;
 mod thumbnails;
@@ -92,6 +93,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("city", instancing::city()),
         ("asteroids", instancing::asteroids()),
         ("character", character::scene()),
+        ("stanford", statues::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),
