@@ -10,9 +10,7 @@ use super::brick_cache::BrickCache;
 use super::notice::{Notice, NoticeLevel};
 use isolith_bricks::{BrickError, Bricks};
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
-use isolith_mesh::{
-    ClipTime, MeshLibrary, ModelPose, TriangleMesh, bricks_key, usual_resolution, voxel_for, voxelized,
-};
+use isolith_mesh::{MeshLibrary, ModelPose, TriangleMesh, bricks_key, usual_resolution, voxel_for, voxelized};
 
 /// A model in a pose, and the size of its voxels.
 #[derive(Clone, Debug, PartialEq)]
