@@ -1,8 +1,6 @@
 // The distance to a model with its gradient. Samples are rounded, and their interpolation has kinks at every
 // voxel: the slope over a voxel and a half is smooth, as the counterpart on the CPU has it.
 
-#include "generated/dual.wgsl"
-
 // Half of it, in voxels.
 const MESH_FIELD_SPREAD: f32 = 0.75;
 

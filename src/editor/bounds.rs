@@ -81,7 +81,7 @@ pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
         NodeKind::Group(_) => None,
         NodeKind::Instancer(instancer) => Some(extent(&instancer.lattice)).filter(|extent| !extent.is_empty()),
         NodeKind::Object(object) => match object.shape.model_request() {
-            Some(request) => meshes.known(&pose_of(&request)).and_then(|mesh| Some(mesh.as_ref().ok()?.bounds)),
+            Some(request) => meshes.known(pose_of(&request)).and_then(|mesh| Some(mesh.as_ref().ok()?.bounds)),
             None => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
         },
         NodeKind::Mesh(mesh) => {

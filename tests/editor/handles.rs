@@ -114,7 +114,9 @@ fn shift_is_precise_ctrl_snaps_and_escape_cancels() {
 
 #[test]
 fn every_handle_of_every_shape_changes_it_in_one_step() {
-    for kind in ShapeKind::ALL.iter().filter(|kind| **kind != ShapeKind::Plane) {
+    // A half space has no size, and a model that of its file.
+    let without = [ShapeKind::Plane, ShapeKind::MeshField];
+    for kind in ShapeKind::ALL.iter().filter(|kind| !without.contains(kind)) {
         let (mut harness, scene, id) = with(object(*kind));
         let all = names(&harness);
         assert!(!all.is_empty(), "{kind:?}");

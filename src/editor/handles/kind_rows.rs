@@ -172,7 +172,9 @@ mod tests {
                 let name = format!("{prefix}{}", param.name);
                 let is_measure = ["m", "°"].contains(&param.limits.unit) && !(param.is_color);
                 let is_turn = ["direction", "spread", "phase"].contains(&param.name);
-                let is_exempt = WITHOUT.contains(&&*name) && !matches!(node.kind, NodeKind::Object(_));
+                // A voxel is too small to be seen.
+                let is_exempt =
+                    name == "voxel_size" || WITHOUT.contains(&&*name) && !matches!(node.kind, NodeKind::Object(_));
                 if is_measure && !is_turn && !is_exempt {
                     let found = rows.iter().filter(|row| row.param == name).count();
                     let wanted = match value {

@@ -31,8 +31,7 @@ impl Prewarmer {
     pub fn new(drawing: &Gpu, options: Options) -> Result<Self, GpuError> {
         let gpu = drawing.another()?;
         let device = &gpu.device;
-        let layouts = Layouts::new(device);
-        let field = FieldLayouts::new(device);
+        let (layouts, field) = (Layouts::new(device), FieldLayouts::new(device));
         let zeros = |size: usize| {
             let mut buffer = SyncedBuffer::rows(device, "prewarm");
             buffer.set(device, &gpu.queue, &vec![0; size]);
