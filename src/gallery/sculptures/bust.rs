@@ -140,9 +140,9 @@ fn hair(p: DVec3) -> f64 {
     let swirl = 5.0 * down + 0.9 * (3.0 * around).sin();
     let curl = (around * 9.0 + 1.4 * (down * 11.0).sin()).sin() * (down * 13.0 + 1.2 * (around * 7.0).sin()).sin();
     let strand = (swirl * 9.0 + around * 22.0 + 3.0 * curl).sin();
-    let relief = 0.007 * curl.abs().sqrt() * curl.signum() + 0.0016 * strand;
+    let carving = 0.007 * curl.abs().sqrt() * curl.signum() + 0.0016 * strand;
     let band = capsule_ring(p);
-    smooth_max(cap - relief * smooth(0.0, -0.02, free), free, 0.012).min(band)
+    smooth_max(cap - carving * smooth(0.0, -0.02, free), free, 0.012).min(band)
 }
 
 fn capsule_ring(p: DVec3) -> f64 {

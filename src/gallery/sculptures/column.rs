@@ -45,7 +45,7 @@ fn radius(angle: f64, height: f64) -> f64 {
     let ring = |at: f64| 0.011 * (-((height - at) / 0.009).powi(2)).exp();
     let within = step(0.19, 0.22) * (1.0 - step(HEIGHT - 0.28, HEIGHT - 0.25));
     let flutes = -0.008 * (0.5 + 0.5 * (12.0 * angle).cos()).powi(2) * within;
-    let mut relief = flutes + ring(0.17) + ring(0.19) + ring(HEIGHT - 0.235);
+    let mut carving = flutes + ring(0.17) + ring(0.19) + ring(HEIGHT - 0.235);
     for band in 0..6 {
         let way = if band % 2 == 0 { 1.0 } else { -1.0 };
         let at = TAU * f64::from(band / 2) / 3.0 + way * height * 7.0;
@@ -56,9 +56,9 @@ fn radius(angle: f64, height: f64) -> f64 {
         if across.abs() < 1.0 {
             let braid = 0.0022 * (way * height * 160.0 + 14.0 * off).sin().abs();
             let cord = (0.022 + over) * (1.0 - across * across).sqrt() + braid;
-            relief = relief.max(cord * within);
+            carving = carving.max(cord * within);
         }
     }
-    let body = round + relief;
+    let body = round + carving;
     body + (square - body) * plate
 }

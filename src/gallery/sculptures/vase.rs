@@ -1,4 +1,4 @@
-//! A vase with a relief of waves and scales.
+//! A vase with a carving of waves and scales.
 
 use std::f64::consts::TAU;
 
@@ -42,8 +42,8 @@ pub(super) fn vase() -> Sculpture {
         for column in 0..AROUND {
             let angle = TAU * column as f64 / AROUND as f64;
             // Nothing is added where the outline ends, and within the neck.
-            let relief = if share < 0.78 { relief(angle, height) * (radius / 0.1).min(1.0) } else { 0.0 };
-            let radius = if radius > 0.0 { radius + relief } else { 0.0 };
+            let carving = if share < 0.78 { carving(angle, height) * (radius / 0.1).min(1.0) } else { 0.0 };
+            let radius = if radius > 0.0 { radius + carving } else { 0.0 };
             points.push(DVec3::new(radius * angle.sin(), height, radius * angle.cos()));
         }
     }
@@ -74,7 +74,7 @@ fn outline(share: f64) -> [f64; 2] {
     [if share <= 0.0 || share >= 1.0 { 0.0 } else { along(0).max(0.002) }, along(1)]
 }
 
-fn relief(angle: f64, height: f64) -> f64 {
+fn carving(angle: f64, height: f64) -> f64 {
     let within = |low: f64, high: f64| {
         let t = ((height - low) / 0.012).clamp(0.0, 1.0) * ((high - height) / 0.012).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
