@@ -17,6 +17,10 @@ const HALF_DIAGONAL: f64 = 6.062_178;
 /// There are too many.
 pub fn bake(bounds: Aabb, voxel: f64, distance: &dyn Fn(DVec3) -> f64) -> Result<Bricks, BrickError> {
     let grid = BrickGrid::around(&bounds, voxel);
+    let least = grid.cell_count().div_ceil(4);
+    if least > MAX_BRICK_TEXELS {
+        return Err(BrickError::TooLarge { texels: least });
+    }
     let mut near: HashMap<[u32; 3], (Box<[u8; BRICK_VOLUME]>, f64)> = HashMap::new();
     for brick in cells(grid.bricks()) {
         let away = distance(grid.middle(brick)).abs() / voxel;

@@ -43,6 +43,7 @@ pub(super) fn isolate(flat: &FlatScene, component: &Component) -> FlatScene {
         nodes: nodes(flat, component).collect(),
         params: params(flat, component).to_vec(),
         components: vec![Component { first: 0, params: 0, ..component.clone() }],
+        bricks: flat.bricks.clone(),
         ..FlatScene::default()
     }
 }
