@@ -6,7 +6,10 @@ use std::collections::HashMap;
 use isolith_geometry::Aabb;
 
 use super::encode::cells;
-use super::{BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, Bricks, encode};
+use super::{
+    BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, Bricks, MAX_BRICK_TEXELS,
+    encode,
+};
 
 /// Half the diagonal of a brick, in voxels.
 const HALF_DIAGONAL: f64 = 6.062_178;
