@@ -7,43 +7,49 @@ const BRICK_TEXELS: u32 = 32u;
 // Steps of a sample in a voxel, and the greatest distance that samples hold, in voxels.
 const SAMPLE_STEPS: f32 = 32.0;
 const SAMPLE_REACH: f32 = 3.96875;
+// From here on a level fades into the next, in voxels.
+const FADE_START: f32 = 2.0;
 // Places of cells without entries: inside, and one more outside.
 const CELL_INSIDE: u32 = 0xfffffffeu;
 const LEVEL_ROWS: u32 = 3u;
 
 fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let levels = u32(scene_row(data + 1u).x);
+    let head = scene_row(data + 1u);
+    let levels = u32(head.x);
     var row = data + 2u;
-    let finest = mesh_field_level(p, row);
-    var best = finest.x;
-    var reached = finest.y;
-    for (var level = 1u; level < levels; level += 1u) {
-        if abs(reached) < SAMPLE_REACH {
+    var sum = 0.0;
+    var rest = 1.0;
+    var is_inside = false;
+    for (var level = 0u; level < levels; level += 1u) {
+        let found = mesh_field_level(p, row, head.y);
+        if level == 0u {
+            is_inside = found.y < 0.0;
+        }
+        let fade = clamp((abs(found.y) - FADE_START) * (1.0 / (SAMPLE_REACH - FADE_START)), 0.0, 1.0);
+        let share = select(fade, 0.0, level + 1u == levels);
+        sum += rest * (1.0 - share) * found.x;
+        rest *= share;
+        if rest == 0.0 {
             break;
         }
         row += LEVEL_ROWS;
-        let coarser = mesh_field_level(p, row);
-        best = max(best, coarser.x);
-        reached = coarser.y;
     }
-    return select(best, -best, finest.y < 0.0);
+    return select(sum, -sum, is_inside);
 }
 
 // A lower bound of the distance by the samples of a level, in meters; and what they tell, in voxels.
-fn mesh_field_level(p: vec3f, row: u32) -> vec2f {
+fn mesh_field_level(p: vec3f, row: u32, scale: f32) -> vec2f {
     let place = scene_row(row);
     let size = scene_row(row + 1u);
-    let limits = scene_row(row + 2u);
     let voxel = place.w;
     let at = (p - place.xyz) * (1.0 / voxel);
     let within = clamp(at, vec3f(0.0), size.xyz * CELL_VOXELS);
-    let raw = mesh_field_within(within, size, u32(limits.x));
-    let value = (abs(raw) * voxel - limits.y) * limits.w;
+    let raw = mesh_field_within(within, size, u32(scene_row(row + 2u).x));
+    let value = abs(raw) * voxel * scale;
     let beside = (at - within) * voxel;
     let beyond = dot(beside, beside);
     if beyond > 0.0 {
-        let rest = max(value, 0.0);
-        return vec2f(sqrt(beyond + rest * rest), raw);
+        return vec2f(sqrt(beyond + value * value), raw);
     }
     return vec2f(value, raw);
 }

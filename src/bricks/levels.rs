@@ -1,24 +1,23 @@
 //! Bricks of one solid in voxels of several sizes.
 //!
 //! Samples reach only as far as four voxels. Farther from the surface coarser bricks take over, each level with voxels
-//! four times as large. Together they are one continuous field, a lower bound of the distance to the surface of the
-//! finest:
-//!
-//! - of the finest, the interpolated distance, exact in sign and zeros;
-//! - of the others, the interpolated distance less [`BrickLevels::error`];
-//! - each over its greatest slope anywhere, so that the slope of the field is at most 1;
-//! - the greatest of these.
-//!
-//! A level whose samples do not reach their end is greater than all coarser ones, so these need no look.
+//! twice as large. From two voxels to the end of its samples, the distance by one level fades into that by the next, so
+//! that the field is continuous, and times [`BrickLevels::scale`] it is a lower bound of the distance to the surface of
+//! the finest, exact in sign and zeros.
 
 use std::sync::Arc;
 
 use super::{BrickError, Bricks};
 
-/// Most levels: at four times the size each, the last reaches 256 voxels of the first.
-pub const MAX_LEVELS: usize = 4;
+/// Most levels: at twice the size each, the last reaches 512 voxels of the first.
+pub const MAX_LEVELS: usize = 8;
 /// The size of a voxel in voxels of the next finer level.
-pub const LEVEL_RATIO: f64 = 4.0;
+pub const LEVEL_RATIO: f64 = 2.0;
+/// From this distance on a level fades into the next, in voxels.
+pub const FADE_START: f64 = 2.0;
+/// How much steeper the fading may make the field, over its scale: the difference of two levels, about a third of a voxel
+/// at most where both are known, over the two voxels of the fading.
+const FADE_SLOPE: f64 = 0.2;
 
 /// Bricks in voxels of several sizes, the finest first; never empty.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,12 +59,14 @@ impl BrickLevels {
         &self.all[0]
     }
 
-    /// How much the interpolated distance of a level after the first may exceed the distance to the surface of the
-    /// finest, in meters: half a diagonal of a voxel, since distances have slopes of at most 1; half a step of its
-    /// samples; and how far the surface of the finest is from that of the solid, at most a voxel.
-    pub fn error(&self, level: usize) -> f64 {
-        let voxel = self.all[level].grid.voxel;
-        (0.75_f64.sqrt() + 0.5 / super::SAMPLE_STEPS + 0.1) * voxel + self.finest().grid.voxel
+    /// The factor on interpolated distances. Two reasons bound it. The interpolation of samples of a function with slopes
+    /// of at most 1 is off by at most half a diagonal of a voxel, and half a step of the samples; a level after the first
+    /// counts where the distance is at least one of its voxels. And the slope of the field is at most 1.
+    pub fn scale(&self) -> f64 {
+        let off = 0.75_f64.sqrt() + 0.5 / super::SAMPLE_STEPS;
+        let steepest = self.all.iter().fold(1.0_f64, |most, bricks| most.max(bricks.slope()));
+        let nearest = FADE_START / LEVEL_RATIO + 0.5;
+        (nearest / (nearest + off)).max(1.0 / (1.0 + 0.5 * off)).min(1.0 / (steepest + FADE_SLOPE))
     }
 
     /// Texels of all levels.

@@ -32,7 +32,7 @@ pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
 pub use digest::{ContentHash, ContentKey};
 pub use encode::{BrickContent, BrickError, encode};
 pub use grid::BrickGrid;
-pub use levels::{BrickLevels, LEVEL_RATIO, MAX_LEVELS};
+pub use levels::{BrickLevels, FADE_START, LEVEL_RATIO, MAX_LEVELS};
 pub use looks::{LOOK_HEADER, Looks, VoxelLook, linear_from_srgb, surface_samples};
 pub use placeholder::placeholder;
 

@@ -1,8 +1,8 @@
 //! A figure whose head is a model: it blends with the body, wears horns that grow out of it, and a bite is missing.
 
 use super::scene_builder::{
-    SceneBuilder, blended, capsule, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus, turn_x,
-    turn_y, turn_z, v,
+    SceneBuilder, blended, capsule, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, turn_x, turn_y,
+    turn_z, v,
 };
 use isolith_scene::{BlendKernel, MaterialId, ModelFile, NodeId, Operator, Points, Scene, Shadowing, Shape};
 
@@ -17,25 +17,23 @@ pub(super) fn scene() -> Scene {
     let fur = builder.glossy("Fur", [0.42, 0.20, 0.085], 0.62);
     let belly = builder.glossy("Belly", [0.72, 0.52, 0.33], 0.6);
     let horn = builder.glossy("Horn", [0.80, 0.74, 0.60], 0.3);
-    let gold = builder.metal("Gold", [1.0, 0.77, 0.34], 0.25);
     let stone = builder.matte("Stone", [0.22, 0.23, 0.26]);
 
     let figure = builder.add(None, group("Figure", Operator::Union).rotated(turn_y(-14.0)));
-    let body = builder.add(figure, blended("Body", Operator::Union, BlendKernel::Circular, 0.22));
+    let body = builder.add(figure, blended("Body", Operator::Union, BlendKernel::Circular, 0.16));
     let head = object("Head", mesh_field("models/suzanne.glb", 192.0), fur);
     builder.add(body, head.at(v(0.0, 2.05, 0.1)).rotated(turn_x(-4.0)).scaled(v(0.85, 0.85, 0.85)));
     torso(&mut builder, body, [fur, belly]);
     limbs(&mut builder, body, fur);
     horns(&mut builder, body, horn);
     let bite = object("Bite", sphere(0.2), belly).negative();
-    builder.add(body, bite.at(v(1.16, 2.42, 0.0)));
-    builder.add(figure, object("Ring", torus(0.1, 0.018), gold).at(v(-1.1, 1.76, 0.05)).rotated(turn_x(90.0)));
+    builder.add(body, bite.at(v(0.98, 2.36, -0.02)));
 
     builder.add(None, object("Plinth", cylinder(1.5, 0.3, 0.04), stone).at(v(0.0, -0.15, 0.0)));
     builder.add(None, object("Ground", cuboid(40.0, 0.2, 40.0, 0.0), stone).at(v(0.0, -0.4, 0.0)));
     builder.sun("Key", [-0.7, 1.0, 0.8], [1.0, 0.93, 0.82], 1.0);
     builder.sun("Rim", [0.8, 0.5, -0.9], [0.55, 0.7, 1.0], 0.6);
-    builder.camera([0.5, 2.0, 6.2], [0.0, 1.45, 0.0], 36.0);
+    builder.camera([0.4, 2.1, 6.9], [0.0, 1.5, 0.0], 36.0);
     builder.finish()
 }
 
@@ -60,9 +58,9 @@ fn limbs(builder: &mut SceneBuilder, body: NodeId, fur: MaterialId) {
 fn horns(builder: &mut SceneBuilder, body: NodeId, horn: MaterialId) {
     for side in [-1.0, 1.0] {
         let points =
-            [[0.0, 0.0, 0.0, 0.15], [0.12, 0.3, 0.02, 0.11], [0.1, 0.56, 0.14, 0.05], [-0.02, 0.72, 0.3, 0.01]];
+            [[0.0, -0.1, 0.0, 0.11], [0.1, 0.16, 0.02, 0.085], [0.1, 0.36, 0.1, 0.04], [0.02, 0.48, 0.22, 0.01]];
         let points = Points::new(points.map(|[x, y, z, r]| [side * x, y, z, r]));
         let curve = Shape::Tube { points, radius: 0.02, closed: false };
-        builder.add(body, object("Horn", curve, horn).at(v(side * 0.3, 2.72, -0.05)).rotated(turn_z(side * -14.0)));
+        builder.add(body, object("Horn", curve, horn).at(v(side * 0.33, 2.72, 0.0)).rotated(turn_z(side * -14.0)));
     }
 }

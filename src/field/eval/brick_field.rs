@@ -1,12 +1,12 @@
 //! The field of distance bricks, see `isolith_bricks` for their texels and for why it is a lower bound. Rows of the
-//! payload: the number of levels, and a number that says which bricks they are. Then for each level: origin of the voxels
-//! and their size; cells along each axis, first texel; the first texel of samples after that one, how much it may exceed
-//! the distance in meters, the greatest distance of its samples in voxels, one over its greatest slope.
+//! payload: the number of levels, the factor on distances, and a number that says which bricks they are. Then for each
+//! level: origin of the voxels and their size; cells along each axis, first texel; the first texel of samples after that
+//! one.
 
 use super::Real;
 use super::sdf::Data;
 use glam::DVec3;
-use isolith_bricks::{BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, SAMPLE_REACH, SAMPLE_STEPS};
+use isolith_bricks::{BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, FADE_START, SAMPLE_REACH, SAMPLE_STEPS};
 
 /// Rows of a level.
 const LEVEL_ROWS: usize = 3;
@@ -28,33 +28,38 @@ pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
 }
 
 fn mesh_field(p: DVec3, data: Data<'_>) -> f64 {
-    let (p, levels) = (p.to_array(), data.row(1)[0] as usize);
-    let (mut best, mut level, is_inside) = mesh_field_level(p, data, 0);
-    while let Some(next) = level.filter(|next| *next < levels) {
-        let (value, after, _) = mesh_field_level(p, data, next);
-        (best, level) = (best.max(value), after);
+    let [levels, scale, ..] = data.row(1);
+    let (mut sum, mut rest, mut sign) = (0.0, 1.0, 1.0);
+    for level in 0..levels as usize {
+        let (value, raw) = mesh_field_level(p, data, level, scale);
+        if level == 0 && raw < 0.0 {
+            sign = -1.0;
+        }
+        let is_last = level + 1 == levels as usize;
+        let fade = ((raw.abs() - FADE_START) / (SAMPLE_REACH - FADE_START)).clamp(0.0, 1.0);
+        let fade = if is_last { 0.0 } else { fade };
+        sum += rest * (1.0 - fade) * value;
+        rest *= fade;
+        if rest == 0.0 {
+            break;
+        }
     }
-    if is_inside { -best } else { best }
+    sign * sum
 }
 
-/// A lower bound of the distance by the samples of a level, in meters; the next level if these samples reach no farther;
-/// and whether the point is inside.
+/// A lower bound of the distance by the samples of a level, in meters, and what they tell, in voxels.
 ///
 /// Outside of the grid the distance to the grid and that from there on are the sides of a right triangle or of an obtuse
 /// one, since the grid is convex and holds the surface.
-fn mesh_field_level(p: [f64; 3], data: Data<'_>, level: usize) -> (f64, Option<usize>, bool) {
+fn mesh_field_level(p: DVec3, data: Data<'_>, level: usize, scale: f64) -> (f64, f64) {
     let row = 2 + LEVEL_ROWS * level;
     let [x, y, z, voxel] = data.row(row);
     let size = data.row(row + 1);
-    let [_, error, reach, over_slope] = data.row(row + 2);
-    let at = (DVec3::from(p) - DVec3::new(x, y, z)) / voxel;
+    let at = (p - DVec3::new(x, y, z)) / voxel;
     let within = at.clamp(DVec3::ZERO, DVec3::new(size[0], size[1], size[2]) * f64::from(CELL_VOXELS));
     let raw = mesh_field_within(within.to_array(), data, row);
-    let next = (raw.abs() >= reach).then_some(level + 1);
-    let value = (raw.abs() * voxel - error) * over_slope;
-    let beside = (at - within) * voxel;
-    let value = if beside == DVec3::ZERO { value } else { beside.length().hypot(value.max(0.0)) };
-    (value, next, raw < 0.0)
+    let (value, beside) = (raw.abs() * voxel * scale, (at - within) * voxel);
+    (if beside == DVec3::ZERO { value } else { beside.length().hypot(value) }, raw)
 }
 
 /// The distance that samples tell at a point within the grid, both in voxels, from the origin of the grid.

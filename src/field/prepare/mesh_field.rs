@@ -1,7 +1,7 @@
 //! Models: where their bricks lie, see `eval/brick_field.rs` for the rows.
 
 use super::prepared_params::PreparedParams;
-use isolith_bricks::{BrickLevels, Bricks, SAMPLE_REACH};
+use isolith_bricks::{BrickLevels, Bricks};
 
 /// Rows of a level.
 const LEVEL_ROWS: usize = 3;
@@ -11,26 +11,21 @@ const FIRST_TEXEL: usize = 1;
 /// The rows of bricks whose first texel is 0.
 pub fn mesh_field(levels: &BrickLevels) -> PreparedParams {
     let marks = levels.all().iter().fold(0, |marks, bricks| (marks * 31 + bricks.mark()) & 0xff_ffff);
-    let mut rows = vec![[levels.all().len() as f64, f64::from(marks), 0.0, 0.0]];
+    let mut rows = vec![[levels.all().len() as f64, levels.scale(), f64::from(marks), 0.0]];
     let mut first = 0;
-    for (level, bricks) in levels.all().iter().enumerate() {
-        let error = if level == 0 { 0.0 } else { levels.error(level) };
-        rows.extend(level_rows(bricks, first, error));
+    for bricks in levels.all() {
+        rows.extend(level_rows(bricks, first));
         first += bricks.texels.len();
     }
     PreparedParams::new([0.0; 4], [0.0; 4], rows)
 }
 
 /// There are fewer texels than 32-bit floats count exactly, see `MAX_BRICK_TEXELS`.
-fn level_rows(bricks: &Bricks, first: usize, error: f64) -> [[f64; 4]; LEVEL_ROWS] {
+fn level_rows(bricks: &Bricks, first: usize) -> [[f64; 4]; LEVEL_ROWS] {
     let [x, y, z] = bricks.grid.origin.to_array();
     let [nx, ny, nz] = bricks.grid.cells.map(f64::from);
     let voxel = bricks.grid.voxel;
-    [
-        [x, y, z, voxel],
-        [nx, ny, nz, first as f64],
-        [f64::from(bricks.first_brick), error, SAMPLE_REACH, 1.0 / bricks.slope()],
-    ]
+    [[x, y, z, voxel], [nx, ny, nz, first as f64], [f64::from(bricks.first_brick), 0.0, 0.0, 0.0]]
 }
 
 /// Calls `row` for each row of the payload whose last number is a first texel, counted from that of the finest level.
