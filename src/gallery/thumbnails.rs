@@ -29,6 +29,7 @@ pictures![
     "shadows",
     "shapes",
     "showcase",
+    "stanford",
     "template-character",
     "template-landscape",
     "template-studio",
