@@ -16,7 +16,7 @@ const LEVEL_ROWS: u32 = 3u;
 fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     let head = scene_row(data + 1u);
     let levels = u32(head.x);
-    var row = data + 2u;
+    var row = data + 4u;
     var sum = 0.0;
     var rest = 1.0;
     var is_inside = false;
@@ -34,7 +34,9 @@ fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
         }
         row += LEVEL_ROWS;
     }
-    return select(sum, -sum, is_inside);
+    // The distance to a box around the surface is a bound, too.
+    let beyond = length(max(abs(p - scene_row(data + 2u).xyz) - scene_row(data + 3u).xyz, vec3f(0.0)));
+    return select(max(sum, beyond), -sum, is_inside);
 }
 
 // A lower bound of the distance by the samples of a level, in meters; and what they tell, in voxels.

@@ -5,7 +5,7 @@
 const MESH_FIELD_SPREAD: f32 = 0.75;
 
 fn dual_sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> vec4f {
-    let step = MESH_FIELD_SPREAD * scene_row(data + 2u).w;
+    let step = MESH_FIELD_SPREAD * scene_row(data + 4u).w;
     var slope = vec3f(0.0);
     for (var axis = 0u; axis < 3u; axis += 1u) {
         let along = select(vec3f(0.0), vec3f(step), vec3u(0u, 1u, 2u) == vec3u(axis));

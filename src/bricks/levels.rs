@@ -7,7 +7,10 @@
 
 use std::sync::Arc;
 
-use super::{BrickError, Bricks};
+use isolith_geometry::Aabb;
+
+use super::encode::cells;
+use super::{BRICK_SAMPLES, BRICK_VOXELS, BrickContent, BrickError, Bricks, SAMPLE_REACH, SAMPLE_STEPS};
 
 /// Most levels: at twice the size each, the last reaches 512 voxels of the first.
 pub const MAX_LEVELS: usize = 8;
@@ -15,20 +18,18 @@ pub const MAX_LEVELS: usize = 8;
 pub const LEVEL_RATIO: f64 = 2.0;
 /// From this distance on a level fades into the next, in voxels.
 pub const FADE_START: f64 = 2.0;
-/// How much steeper the fading may make the field, over its scale: the difference of two levels, about a third of a voxel
-/// at most where both are known, over the two voxels of the fading.
-const FADE_SLOPE: f64 = 0.2;
-
 /// Bricks in voxels of several sizes, the finest first; never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrickLevels {
     all: Vec<Arc<Bricks>>,
+    scale: f64,
 }
 
 impl BrickLevels {
     /// These levels, the finest first; `None` if there are none.
     pub fn new(all: Vec<Arc<Bricks>>) -> Option<Self> {
-        (!all.is_empty() && all.len() <= MAX_LEVELS).then_some(Self { all })
+        let scale = scale_of(&all);
+        (!all.is_empty() && all.len() <= MAX_LEVELS).then_some(Self { all, scale })
     }
 
     /// The levels that `make` makes for each size of voxels.
@@ -40,7 +41,8 @@ impl BrickLevels {
         while let Some(next) = Self::coarser(&all[all.len() - 1], all.len()) {
             all.push(Arc::new(make(next)?));
         }
-        Ok(Self { all })
+        let scale = scale_of(&all);
+        Ok(Self { all, scale })
     }
 
     /// The size of the voxels of the level after `levels` levels, whose last one is this; `None` if none is needed.
@@ -61,16 +63,51 @@ impl BrickLevels {
 
     /// The factor on interpolated distances. Two reasons bound it. The interpolation of samples of a function with slopes
     /// of at most 1 is off by at most half a diagonal of a voxel, and half a step of the samples; a level after the first
-    /// counts where the distance is at least one of its voxels. And the slope of the field is at most 1.
+    /// counts where the distance is at least one and a half of its voxels. And the slope of the field is at most 1, where
+    /// a level fades into the next, too.
     pub fn scale(&self) -> f64 {
-        let off = 0.75_f64.sqrt() + 0.5 / super::SAMPLE_STEPS;
-        let steepest = self.all.iter().fold(1.0_f64, |most, bricks| most.max(bricks.slope()));
-        let nearest = FADE_START / LEVEL_RATIO + 0.5;
-        (nearest / (nearest + off)).max(1.0 / (1.0 + 0.5 * off)).min(1.0 / (steepest + FADE_SLOPE))
+        self.scale
+    }
+
+    /// A box around the surface of the finest, which is at most a voxel from that of the solid.
+    pub fn bounds(&self) -> Aabb {
+        let finest = self.finest();
+        finest.bounds.expanded(finest.grid.voxel)
     }
 
     /// Texels of all levels.
     pub fn texels(&self) -> usize {
         self.all.iter().map(|bricks| bricks.texels.len()).sum()
     }
+}
+
+/// See [`BrickLevels::scale`].
+fn scale_of(all: &[Arc<Bricks>]) -> f64 {
+    let off = 0.75_f64.sqrt() + 0.5 / SAMPLE_STEPS;
+    let nearest = FADE_START / LEVEL_RATIO + 0.5;
+    let steepest = all.iter().fold(1.0_f64, |most, bricks| most.max(bricks.slope()));
+    let apart = all.windows(2).fold(0.0_f64, |most, pair| most.max(apart(&pair[0], &pair[1])));
+    let fading = steepest * apart / (SAMPLE_REACH - FADE_START);
+    (nearest / (nearest + off)).min(1.0 / (steepest + fading))
+}
+
+/// How far apart two levels are where one fades into the other, in voxels of the finer: at every other sample, with a
+/// tenth more for those between.
+fn apart(finer: &Bricks, coarser: &Bricks) -> f64 {
+    let voxel = finer.grid.voxel;
+    let mut most = 0.0_f64;
+    for brick in cells(finer.grid.bricks()) {
+        let Some(BrickContent::Near { samples, .. }) = finer.content(brick) else { continue };
+        for [x, y, z] in cells([BRICK_SAMPLES as u32 / 2; 3]).map(|at| at.map(|n| 2 * n)) {
+            let side = BRICK_SAMPLES as u32;
+            let own = BrickContent::sample_voxels(samples[(x + side * (y + side * z)) as usize]).abs();
+            if own <= FADE_START || own >= SAMPLE_REACH {
+                continue;
+            }
+            let p = finer.grid.sample([0, 1, 2].map(|i| brick[i] * BRICK_VOXELS + [x, y, z][i]));
+            let other = coarser.interpolated(p).map_or(SAMPLE_REACH * LEVEL_RATIO, |d| d.abs() / voxel);
+            most = most.max((other - own).abs());
+        }
+    }
+    1.1 * most
 }

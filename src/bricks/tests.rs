@@ -40,3 +40,12 @@ fn too_many_are_refused_with_their_number() {
     let refused = bake(bounds, 1e-5, &|p| p.length() - 1.0).unwrap_err().to_string();
     assert!(refused.contains("texels") && refused.contains("lower resolution"), "{refused}");
 }
+
+#[test]
+fn the_scale_of_a_ball_is_little_less_than_what_its_slope_allows() {
+    let bounds = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(0.5));
+    let mut make = |voxel| bake(bounds, voxel, &|p: DVec3| p.length() - 0.5);
+    let levels = BrickLevels::made(0.02, &mut make).unwrap();
+    assert!((3..=MAX_LEVELS).contains(&levels.all().len()), "{levels:?}");
+    assert!((0.45..0.75).contains(&levels.scale()), "{}", levels.scale());
+}

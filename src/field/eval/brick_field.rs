@@ -1,6 +1,6 @@
 //! The field of distance bricks, see `isolith_bricks` for their texels and for why it is a lower bound. Rows of the
-//! payload: the number of levels, the factor on distances, and a number that says which bricks they are. Then for each
-//! level: origin of the voxels and their size; cells along each axis, first texel; the first texel of samples after that
+//! payload: the number of levels, the factor on distances, and a number that says which bricks they are; the middle and half
+//! the size of a box around the surface. Then for each level: origin of the voxels and their size; cells along each axis, first texel; the first texel of samples after that
 //! one.
 
 use super::Real;
@@ -21,7 +21,7 @@ pub const MESH_FIELD_SPREAD: f64 = 0.75;
 pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
     let at = DVec3::from(p.map(T::value));
     T::known(mesh_field(at, data), p, || {
-        let step = MESH_FIELD_SPREAD * data.row(2)[3];
+        let step = MESH_FIELD_SPREAD * data.row(4)[3];
         let rise = |axis: DVec3| mesh_field(at + axis * step, data) - mesh_field(at - axis * step, data);
         (DVec3::from(DVec3::AXES.map(rise)) / (2.0 * step)).clamp_length_max(1.0)
     })
@@ -44,7 +44,9 @@ fn mesh_field(p: DVec3, data: Data<'_>) -> f64 {
             break;
         }
     }
-    sign * sum
+    let [center, half] = [2, 3].map(|row| DVec3::from_slice(&data.row(row)));
+    let beyond = ((p - center).abs() - half).max(DVec3::ZERO).length();
+    if sign < 0.0 { -sum } else { sum.max(beyond) }
 }
 
 /// A lower bound of the distance by the samples of a level, in meters, and what they tell, in voxels.
@@ -52,7 +54,7 @@ fn mesh_field(p: DVec3, data: Data<'_>) -> f64 {
 /// Outside of the grid the distance to the grid and that from there on are the sides of a right triangle or of an obtuse
 /// one, since the grid is convex and holds the surface.
 fn mesh_field_level(p: DVec3, data: Data<'_>, level: usize, scale: f64) -> (f64, f64) {
-    let row = 2 + LEVEL_ROWS * level;
+    let row = 4 + LEVEL_ROWS * level;
     let [x, y, z, voxel] = data.row(row);
     let size = data.row(row + 1);
     let at = (p - DVec3::new(x, y, z)) / voxel;

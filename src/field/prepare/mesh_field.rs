@@ -12,6 +12,8 @@ const FIRST_TEXEL: usize = 1;
 pub fn mesh_field(levels: &BrickLevels) -> PreparedParams {
     let marks = levels.all().iter().fold(0, |marks, bricks| (marks * 31 + bricks.mark()) & 0xff_ffff);
     let mut rows = vec![[levels.all().len() as f64, levels.scale(), f64::from(marks), 0.0]];
+    let bounds = levels.bounds();
+    rows.extend([bounds.center(), bounds.half()].map(|v| [v.x, v.y, v.z, 0.0]));
     let mut first = 0;
     for bricks in levels.all() {
         rows.extend(level_rows(bricks, first));
@@ -30,6 +32,6 @@ fn level_rows(bricks: &Bricks, first: usize) -> [[f64; 4]; LEVEL_ROWS] {
 
 /// Calls `row` for each row of the payload whose last number is a first texel, counted from that of the finest level.
 pub fn first_texels(levels: &BrickLevels, mut row: impl FnMut(usize)) {
-    // The first two are the bounding sphere and the number of levels.
-    (0..levels.all().len()).for_each(|level| row(2 + LEVEL_ROWS * level + FIRST_TEXEL));
+    // Four rows come before: the bounding sphere, the number of levels, the bounds.
+    (0..levels.all().len()).for_each(|level| row(4 + LEVEL_ROWS * level + FIRST_TEXEL));
 }

@@ -28,7 +28,7 @@ impl Shape {
                 let [x, depth, z] = size;
                 Aabb::new(DVec3::new(-0.5 * x, -depth, -0.5 * z), DVec3::new(0.5 * x, amplitude, 0.5 * z))
             }
-            Self::MeshField { ref file, .. } => file.bricks().finest().bounds,
+            Self::MeshField { ref file, .. } => file.bricks().bounds(),
             Self::RoundCone { bottom_radius, top_radius, height } => {
                 let low = (-0.5 * height - bottom_radius).min(0.5 * height - top_radius);
                 let high = (0.5 * height + top_radius).max(-0.5 * height + bottom_radius);
