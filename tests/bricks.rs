@@ -190,7 +190,7 @@ fn what_bricks_say_is_a_lower_bound() {
             }
         }
         assert!(
-            (far_ones > 30 || ["plate", "box"].contains(&name)) && near_ones > 30,
+            (far_ones > 10 || ["plate", "box"].contains(&name)) && near_ones > 30,
             "{name}: {far_ones} and {near_ones}"
         );
     }

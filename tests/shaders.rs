@@ -333,7 +333,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
         shadow_settings(),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
-        layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
+        layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size, axis, reach, bias, padding }),
         layout!(
             "DebugView" =
                 DebugView { view_mode, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }

@@ -27,7 +27,7 @@ const MAX_DEPTH: f64 = 0.05;
 /// strategies may find either.
 const MAX_SHARE: f64 = 2e-3;
 /// Number of random trees, and of trees that share a palette of shapes.
-const TREES: u64 = 200;
+const TREES: u64 = 220;
 const TREES_OF_A_KIND: u64 = 20;
 
 /// Describes how two pictures differ; `None` if they agree. A pixel whose ray passes an edge within rounding may show

@@ -109,6 +109,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     if menu == Menu::Edit {
         ui.separator();
         for (name, menu) in [
+            ("Select", Menu::Select),
             ("Paste only", Menu::PastePart),
             ("Align and distribute", Menu::Arrange),
             ("Instancer presets", Menu::Presets),

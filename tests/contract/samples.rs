@@ -80,6 +80,8 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
             ParamValue::Scalar(_) => ParamValue::Scalar(next()),
             ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
             ParamValue::Flag(_) => ParamValue::Flag(next() > 0.5),
+            // The file of a model, and its clip.
+            ParamValue::Text(text) if kind == ShapeKind::MeshField => ParamValue::Text(text),
             ParamValue::Text(_) => {
                 // Up to three letters: an empty text, one profile, profiles with holes.
                 let count = within(&Limits::new([0.0, 3.9], [0.0, 3.0], "")) as usize;

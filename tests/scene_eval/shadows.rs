@@ -83,7 +83,9 @@ impl Tally {
         let before = evaluator.counts.evaluations;
         let found = shadow_share(evaluator, claimed);
         self.evaluations += evaluator.counts.evaluations - before;
-        let truth = shadow_by_rays(evaluator, cone, RAYS).unwrap();
+        // The light is a disc at the end of the axis: rays to its rim are a little longer.
+        let rays = ShadowCone { far: cone.far * (1.0 + cone.spread * cone.spread).sqrt(), ..*cone };
+        let truth = shadow_by_rays(evaluator, &rays, RAYS).unwrap();
         self.error += (found.share - truth).abs();
         self.cones += 1;
         self.proofs += usize::from(found.proof != ShadowProof::None);

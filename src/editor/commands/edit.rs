@@ -202,35 +202,42 @@ fn showing() -> Vec<CommandInfo> {
             "Select parent",
             "Selects the groups that hold the selection",
         )
-        .key(NONE, Key::OpenBracket),
+        .key(NONE, Key::OpenBracket)
+        .within(Menu::Select),
         on_selection(
             Command::SelectChildren,
             ICON_ARROW_DOWNWARD,
             "Select children",
             "Selects what the selected groups hold",
         )
-        .key(NONE, Key::CloseBracket),
-        on_selection(Command::SelectSimilar, ICON_SELECT_ALL, "Select similar", similar).key(Modifiers::SHIFT, Key::G),
+        .key(NONE, Key::CloseBracket)
+        .within(Menu::Select),
+        on_selection(Command::SelectSimilar, ICON_SELECT_ALL, "Select similar", similar)
+            .key(Modifiers::SHIFT, Key::G)
+            .within(Menu::Select),
         on_selection(
             Command::SelectSameMaterial,
             ICON_SELECT_ALL,
             "Select same material",
             "Selects all with the material of the active node",
-        ),
+        )
+        .within(Menu::Select),
         row(
             Command::SelectByBox,
             ICON_SELECT,
             "Select by a box",
             "The next drag in the viewport selects what is in its box",
         )
-        .key(NONE, Key::B),
+        .key(NONE, Key::B)
+        .within(Menu::Select),
         row(
             Command::SelectByLasso,
             ICON_LASSO_SELECT,
             "Select by a lasso",
             "The next drag in the viewport draws a line around what is selected",
         )
-        .key(Modifiers::SHIFT, Key::B),
+        .key(Modifiers::SHIFT, Key::B)
+        .within(Menu::Select),
         CommandInfo::new(Menu::Edit, Command::Isolate, Icon::from(ICON_VISIBILITY_LOCK), "Isolate", alone)
             .key(NONE, Key::Slash)
             .when(|state| any(state) || !state.view.isolated.is_empty()),

@@ -19,6 +19,8 @@ pub enum Menu {
     File,
     /// Changes of the selection.
     Edit,
+    /// Ways to select; a submenu of Edit.
+    Select,
     /// Ready-made settings of instancers; a submenu of Edit.
     Presets,
     /// Parts of a copied node; a submenu of Edit.
@@ -119,6 +121,11 @@ impl CommandInfo {
     pub(super) fn key(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.keys.push(KeyboardShortcut::new(modifiers, key));
         self
+    }
+
+    /// The same in another menu.
+    pub(super) fn within(self, menu: Menu) -> Self {
+        Self { menu, ..self }
     }
 
     /// The same with its shortcuts in one keymap only.

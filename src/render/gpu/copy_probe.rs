@@ -109,8 +109,8 @@ fn run(
     let mut places = gpu_places(instancer).to_vec();
     places.resize(places.len().max(1), [0.0; 4]);
     let places = rows(bytemuck::cast_slice(&places));
-    let of_copies = layout(device, "copies", &[entry(5, stage, uniform(false)), entry(6, stage, read_storage())]);
-    let entries = [(5, &uniforms), (6, &places)]
+    let of_copies = layout(device, "copies", &[entry(6, stage, uniform(false)), entry(7, stage, read_storage())]);
+    let entries = [(6, &uniforms), (7, &places)]
         .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.binding() });
     let copies = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("copies"),
