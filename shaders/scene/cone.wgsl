@@ -69,6 +69,9 @@ fn cone_march_begin() -> ConeMarch {
     return ConeMarch(SceneVisit(0.0, 0.0, 0u), 0u, 0.0, vec2f(0.0), 0.0, 1.0, 0u);
 }
 
+// The ratio of field and radius once a cone is wholly within a solid; others are at least -1.
+const PROVEN_DARK: f32 = -2.0;
+
 // The visible share of a disc if a straight edge cuts it at `ratio` radii from its middle.
 fn cone_share(ratio: f32) -> f32 {
     let s = clamp(ratio, -1.0, 1.0);
@@ -169,8 +172,11 @@ fn cone_step(cone: SceneCone, march: ptr<function, ConeMarch>, f: f32, slack: f3
     let t = march.t;
     let last = march.last;
     let exit = march.visit.exit;
-    march.ratio = min(march.ratio, (f + select(0.0, slack, f > 0.0)) / max(cone.size * t, LEAST_RADIUS));
-    if march.ratio <= -1.0 {
+    let ratio = (f + select(0.0, slack, f > 0.0)) / max(cone.size * t, LEAST_RADIUS);
+    march.ratio = max(min(march.ratio, ratio), -1.0);
+    // In a stretched copy the size is that of the section on average, and the spread holds all of it.
+    if f <= -max(max(cone.size, cone.spread) * t, LEAST_RADIUS) {
+        march.ratio = PROVEN_DARK;
         march.state &= ~CONE_LIT;
         cone_leave(cone, march);
         return;
@@ -203,7 +209,7 @@ fn cone_step(cone: SceneCone, march: ptr<function, ConeMarch>, f: f32, slack: f3
 // Ends the march through a component.
 fn cone_leave(cone: SceneCone, march: ptr<function, ConeMarch>) {
     let is_lit = (march.state & CONE_LIT) != 0u;
-    let is_dark = march.ratio <= -1.0;
+    let is_dark = march.ratio == PROVEN_DARK;
     let share = select(cone_share(march.ratio), 1.0, is_lit);
     let all = select(min(march.share, share), march.share * share, cone.size < WIDE_SPREAD);
     march.share = select(all, 0.0, is_dark);

@@ -6,12 +6,15 @@ const MESH_FIELD_SPREAD: f32 = 0.75;
 
 fn dual_sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> vec4f {
     let step = MESH_FIELD_SPREAD * scene_row(data + 4u).w;
-    var slope = vec3f(0.0);
-    for (var axis = 0u; axis < 3u; axis += 1u) {
-        let along = select(vec3f(0.0), vec3f(step), vec3u(0u, 1u, 2u) == vec3u(axis));
-        let rise = sdf_mesh_field(p + along, a, b, data) - sdf_mesh_field(p - along, a, b, data);
-        slope = select(slope, vec3f(rise / (2.0 * step)), vec3u(0u, 1u, 2u) == vec3u(axis));
-    }
+    let x = vec3f(step, 0.0, 0.0);
+    let y = vec3f(0.0, step, 0.0);
+    let z = vec3f(0.0, 0.0, step);
+    let rise = vec3f(
+        sdf_mesh_field(p + x, a, b, data) - sdf_mesh_field(p - x, a, b, data),
+        sdf_mesh_field(p + y, a, b, data) - sdf_mesh_field(p - y, a, b, data),
+        sdf_mesh_field(p + z, a, b, data) - sdf_mesh_field(p - z, a, b, data),
+    );
+    let slope = rise / (2.0 * step);
     // Differences over a kink may be a little longer than 1.
     return vec4f(slope / max(length(slope), 1.0), sdf_mesh_field(p, a, b, data));
 }

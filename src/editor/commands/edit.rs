@@ -35,6 +35,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     all.push(on_selection(Command::KeyTransform, ICON_KEY, "Insert key", keys).key(NONE, Key::K).group());
     all.extend(arrange::commands());
     all.extend(showing());
+    all.extend(selecting());
     all
 }
 
@@ -185,7 +186,6 @@ fn extended_operators() -> Vec<CommandInfo> {
 fn showing() -> Vec<CommandInfo> {
     let nothing = "Clears the selection and shows the scene's settings";
     let unused = "Removes materials that nothing uses";
-    let similar = "Selects all with the shape, operator or kind of light of the active node";
     let alone = "Hides everything else but lights and cameras; once more shows it again";
     let drop = "Moves the selection down until it touches what is below it, or the ground";
     let unique = "Copies of materials that others use, too, for the selection alone";
@@ -196,6 +196,31 @@ fn showing() -> Vec<CommandInfo> {
         CommandInfo::new(Menu::Edit, Command::SelectNothing, None, "Deselect all", nothing)
             .key(NONE, Key::Escape)
             .when(|state| any(state) || state.materials.current.is_some()),
+        CommandInfo::new(Menu::Edit, Command::Isolate, Icon::from(ICON_VISIBILITY_LOCK), "Isolate", alone)
+            .key(NONE, Key::Slash)
+            .when(|state| any(state) || !state.view.isolated.is_empty()),
+        on_selection(Command::DropOnSurface, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, "Drop on surface", drop)
+            .key(NONE, Key::End),
+        on_selection(
+            Command::ToggleVisible,
+            ICON_VISIBILITY_OFF,
+            "Toggle visible",
+            "Hides the selection, or shows it again",
+        )
+        .key(NONE, Key::H),
+        row(Command::ShowAll, ICON_VISIBILITY, "Show all", "Shows everything that is hidden")
+            .key(Modifiers::ALT, Key::H),
+        on_selection(Command::ToggleLock, ICON_LOCK, "Toggle lock", "Locked nodes are not picked in the viewport")
+            .key(NONE, Key::L),
+        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique).group(),
+        CommandInfo::new(Menu::Edit, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
+    ]
+}
+
+/// The submenu of ways to select.
+fn selecting() -> Vec<CommandInfo> {
+    let similar = "Selects all with the shape, operator or kind of light of the active node";
+    vec![
         on_selection(
             Command::SelectParents,
             ICON_ARROW_UPWARD,
@@ -238,23 +263,5 @@ fn showing() -> Vec<CommandInfo> {
         )
         .key(Modifiers::SHIFT, Key::B)
         .within(Menu::Select),
-        CommandInfo::new(Menu::Edit, Command::Isolate, Icon::from(ICON_VISIBILITY_LOCK), "Isolate", alone)
-            .key(NONE, Key::Slash)
-            .when(|state| any(state) || !state.view.isolated.is_empty()),
-        on_selection(Command::DropOnSurface, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, "Drop on surface", drop)
-            .key(NONE, Key::End),
-        on_selection(
-            Command::ToggleVisible,
-            ICON_VISIBILITY_OFF,
-            "Toggle visible",
-            "Hides the selection, or shows it again",
-        )
-        .key(NONE, Key::H),
-        row(Command::ShowAll, ICON_VISIBILITY, "Show all", "Shows everything that is hidden")
-            .key(Modifiers::ALT, Key::H),
-        on_selection(Command::ToggleLock, ICON_LOCK, "Toggle lock", "Locked nodes are not picked in the viewport")
-            .key(NONE, Key::L),
-        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique).group(),
-        CommandInfo::new(Menu::Edit, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
     ]
 }

@@ -32,6 +32,8 @@ pub const SHADOW_REACH: f64 = 1e6;
 /// Copies that leave less of a light count as leaving nothing, so that cones through endless lattices end: half of what
 /// a byte resolves.
 const LEAST_SHARE: f64 = 0.002;
+/// The ratio of field and radius once a cone is wholly within a solid; others are at least -1.
+const PROVEN_DARK: f64 = -2.0;
 /// Least step in the cone's radius, by quality.
 pub const CONE_STEPS: [f64; 3] = [0.5, 0.25, 0.125];
 
@@ -253,9 +255,10 @@ impl ConeMarch {
     fn step(&mut self, f: f64, cone: &ShadowCone, exit: f64) {
         let t = self.t;
         let [last_t, last_f] = self.last;
-        self.ratio = self.ratio.min(f / (cone.size * t).max(LEAST_RADIUS));
-        if self.ratio <= -1.0 {
-            (self.lit, self.ended) = (false, true);
+        self.ratio = self.ratio.min(f / (cone.size * t).max(LEAST_RADIUS)).max(-1.0);
+        // In a stretched copy the size is that of the section on average, and the spread holds all of it.
+        if f <= -(cone.size.max(cone.spread) * t).max(LEAST_RADIUS) {
+            (self.ratio, self.lit, self.ended) = (PROVEN_DARK, false, true);
             return;
         }
         let holds = spheres_hold(self.last, [t, f], cone.spread);
@@ -280,7 +283,7 @@ impl ConeMarch {
 
     fn share(&self) -> ShadowShare {
         let proof = match () {
-            () if self.ratio <= -1.0 => ShadowProof::Dark,
+            () if self.ratio == PROVEN_DARK => ShadowProof::Dark,
             () if self.lit => ShadowProof::Lit,
             () => ShadowProof::None,
         };
