@@ -90,7 +90,9 @@ impl Random {
 
     /// A shape within its limits.
     pub fn shape(&mut self) -> Shape {
-        let kind = self.pick(ShapeKind::ALL);
+        // Models, the last kind, take no number, so that scenes without them are what they were.
+        let (model, others) = ShapeKind::ALL.split_last().expect("there are shapes");
+        let kind = if self.0 >> 59 == 7 { *model } else { self.pick(others) };
         let mut shape = kind.default_shape();
         for (i, param) in kind.params().iter().enumerate() {
             let value = match shape.values().swap_remove(i) {
