@@ -1,5 +1,7 @@
 //! Distance bricks of meshes: against the distances and winding numbers of the triangles themselves.
 
+#![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
+
 mod exact;
 mod making;
 mod shapes;

@@ -12,8 +12,11 @@ use bust::bust;
 use column::column;
 use vase::vase;
 
-/// The sculptures: their paths beside the scenes, and what makes their files.
-pub const SCULPTURES: [(&str, fn() -> Vec<u8>); 3] = [
+/// A sculpture: its path beside the scenes, and what makes its file.
+type SculptureFile = (&'static str, fn() -> Vec<u8>);
+
+/// The sculptures.
+pub const SCULPTURES: [SculptureFile; 3] = [
     ("models/bust.glb", || bust().file()),
     ("models/vase.glb", || vase().file()),
     ("models/column.glb", || column().file()),
