@@ -308,7 +308,7 @@ fn random_edits_at_random_moments_keep_every_track_sound_and_are_undone() {
         }
         let mut document = Document::new(scene);
         let start = Arc::clone(document.resting());
-        for _ in 0..60 {
+        for _ in 0..90 {
             document.set_time(random.unit() * 5.0 - 0.5);
             let before = (document.resting().animation.key_count(), document.resting().animation.tracks().len());
             let Some(edit) = edit(&mut random, document.scene()) else { continue };

@@ -12,7 +12,7 @@ use super::{
 pub enum BrickContent {
     /// The surface is at least this far from all of it, in voxels; negative inside. At least [`super::BAND`].
     Far(f64),
-    /// It has samples, see [`sample_byte`], and the interpolation of these and those of all neighbors, with samples or
+    /// It has samples, see [`BrickContent::sample_byte`], and the interpolation of these and those of all neighbors, with samples or
     /// without, has at most this slope, in voxels per voxel.
     Near {
         /// The samples, x fastest.

@@ -51,7 +51,7 @@ impl ModelFields {
         self.library.take_notices()
     }
 
-    /// Starts making what is missing, and takes over what was made, see [`BrickLibrary::follow`]. Returns whether scenes
+    /// Starts making what is missing, and takes over what was made. Returns whether scenes
     /// get anything else than before.
     pub fn follow(&mut self, jobs: &Jobs, requests: &[ModelRequest], meshes: &MeshLibrary) -> bool {
         let keys = self.keys(requests);
