@@ -23,13 +23,13 @@ pub const FADE_START: f64 = 2.0;
 pub struct BrickLevels {
     all: Vec<Arc<Bricks>>,
     scale: f64,
+    mark: u32,
 }
 
 impl BrickLevels {
     /// These levels, the finest first; `None` if there are none.
     pub fn new(all: Vec<Arc<Bricks>>) -> Option<Self> {
-        let scale = scale_of(&all);
-        (!all.is_empty() && all.len() <= MAX_LEVELS).then_some(Self { all, scale })
+        (!all.is_empty() && all.len() <= MAX_LEVELS).then(|| Self::of(all))
     }
 
     /// The levels that `make` makes for each size of voxels.
@@ -41,8 +41,13 @@ impl BrickLevels {
         while let Some(next) = Self::coarser(&all[all.len() - 1], all.len()) {
             all.push(Arc::new(make(next)?));
         }
-        let scale = scale_of(&all);
-        Ok(Self { all, scale })
+        Ok(Self::of(all))
+    }
+
+    /// Measures these levels, once: both numbers take a look at every texel.
+    fn of(all: Vec<Arc<Bricks>>) -> Self {
+        let (scale, mark) = (scale_of(&all), mark_of(&all));
+        Self { all, scale, mark }
     }
 
     /// The size of the voxels of the level after `levels` levels, whose last one is this; `None` if none is needed.
@@ -69,6 +74,11 @@ impl BrickLevels {
         self.scale
     }
 
+    /// A number of 24 bits that other bricks rarely have.
+    pub fn mark(&self) -> u32 {
+        self.mark
+    }
+
     /// A box around the surface of the finest, which is at most a voxel from that of the solid.
     pub fn bounds(&self) -> Aabb {
         let finest = self.finest();
@@ -79,6 +89,13 @@ impl BrickLevels {
     pub fn texels(&self) -> usize {
         self.all.iter().map(|bricks| bricks.texels.len()).sum()
     }
+}
+
+/// See [`BrickLevels::mark`]; by FNV-1a (Fowler, Noll, Vo).
+fn mark_of(all: &[Arc<Bricks>]) -> u32 {
+    let step = |hash: u64, word: &u32| (hash ^ u64::from(*word)).wrapping_mul(0x100_0000_01b3);
+    let words = all.iter().flat_map(|bricks| bricks.texels.iter().flatten());
+    (words.fold(0xcbf2_9ce4_8422_2325, step) >> 40) as u32
 }
 
 /// See [`BrickLevels::scale`].

@@ -100,13 +100,6 @@ impl Bricks {
         1.0 + f64::from(entries.iter().flatten().map(slope).max().unwrap_or(0)) / 64.0
     }
 
-    /// A number of 24 bits that other bricks rarely have (FNV-1a, Fowler, Noll, Vo).
-    pub fn mark(&self) -> u32 {
-        let step = |hash: u64, word: &u32| (hash ^ u64::from(*word)).wrapping_mul(0x100_0000_01b3);
-        let hash = self.texels.iter().flatten().fold(0xcbf2_9ce4_8422_2325, step);
-        (hash >> 40) as u32
-    }
-
     /// Bytes of the texels of distances.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.texels)

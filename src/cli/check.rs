@@ -15,6 +15,7 @@ use crate::scene::limits::{
     MAX_ATTACHMENT_BYTES, MAX_DEPTH, MAX_KEYS, MAX_MATERIALS, MAX_NODES, MAX_SCENE_PIXELS, MAX_TRACKS,
 };
 use crate::scene::{Node, NodeId, NodeKind, Object, Param, ParamPath, ParamValue, Scene, Shape, text_profile};
+use crate::session::pose_of;
 
 /// Arguments of `isolith check`.
 #[derive(Debug, clap::Args)]
@@ -112,8 +113,19 @@ fn read(path: &Path, with_params: bool) -> Result<Report, Failure> {
     let (meshes, missing) = flat.load_meshes(&mut library);
     report.clips = clips(&scene, &flat, &meshes);
     report.warnings.extend(missing.into_iter().map(CheckWarning::from));
+    report.warnings.extend(models_that_are_no_fields(&scene, &mut library));
     report.params = with_params.then(|| ParamPath::all(&scene));
     Ok(report)
+}
+
+/// Warnings about shapes whose models cannot be read. Bricks are not made.
+fn models_that_are_no_fields(scene: &Scene, library: &mut MeshLibrary) -> Vec<CheckWarning> {
+    let refused = scene.nodes().iter().filter_map(|node| {
+        let NodeKind::Object(object) = &node.kind else { return None };
+        let error = library.get(pose_of(&object.shape.model_request()?)).err()?;
+        Some(CheckWarning { node: format!("{} {}", node.name, node.id), reason: error.to_string() })
+    });
+    refused.collect()
 }
 
 /// The animation clips of the models that the scene shows.

@@ -10,8 +10,7 @@ const FIRST_TEXEL: usize = 1;
 
 /// The rows of bricks whose first texel is 0.
 pub fn mesh_field(levels: &BrickLevels) -> PreparedParams {
-    let marks = levels.all().iter().fold(0, |marks, bricks| (marks * 31 + bricks.mark()) & 0xff_ffff);
-    let mut rows = vec![[levels.all().len() as f64, levels.scale(), f64::from(marks), 0.0]];
+    let mut rows = vec![[levels.all().len() as f64, levels.scale(), f64::from(levels.mark()), 0.0]];
     let bounds = levels.bounds();
     rows.extend([bounds.center(), bounds.half()].map(|v| [v.x, v.y, v.z, 0.0]));
     let mut first = 0;
