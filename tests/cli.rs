@@ -340,10 +340,15 @@ fn check_warns_about_meshes_that_are_missing() {
     let place = Place::new();
     let mut scene = sample();
     let mesh = NodeKind::Mesh(MeshNode::new("no.glb"));
-    scene.insert(None, 0, Node::new("statue", mesh)).expect("the scene has room");
+    let mut field = isolith::scene::ShapeKind::MeshField.default_shape();
+    assert!(field.set_value(0, isolith::scene::ParamValue::Text("no.glb".into())));
+    let field = NodeKind::Object(Object { shape: field, material: scene.materials()[0].id });
+    for (name, kind) in [("statue", mesh), ("solid statue", field)] {
+        scene.insert(None, 0, Node::new(name, kind)).expect("the scene has room");
+    }
     place.write("mesh.json", &scene);
     let report = place.run(&["check", "mesh.json", "--json"]).succeeded().object();
-    assert_eq!(report["warnings"].as_array().map(Vec::len), Some(1));
+    assert_eq!(report["warnings"].as_array().map(Vec::len), Some(2));
     assert_eq!(keys(&report["warnings"][0]), ["node", "reason"]);
 }
 
