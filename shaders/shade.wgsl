@@ -27,6 +27,9 @@
 @group(3) @binding(2) var<storage, read> texture_sets: array<TextureSet>;
 @group(3) @binding(3) var texels: texture_storage_2d<r32uint, read>;
 #end
+#if LOOKS
+@group(3) @binding(7) var bricks: texture_storage_2d<rgba32uint, read>;
+#end
 
 #include "light/material.wgsl"
 #if COPIES
@@ -75,6 +78,7 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
 #if TEXTURES
         mixture_point = textured_point(direction, depth, surface_normal, view.footprint);
         mixture_bend = vec3f(0.0);
+        mixture_pixel = pixel;
 #end
         let stored = textureLoad(material_target, pixel, 0);
         var mixture = select(stored, vec4u(0u), is_mesh);

@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
 mod exact;
+mod looks;
 mod making;
 mod shapes;
 
@@ -287,24 +288,32 @@ fn looks_are_those_of_the_mesh() {
     let mut dice = Dice(6);
     let ball = Soup::sphere(64, 1.0);
     for soup in [ball.clone(), ball.inverted()] {
-        let bricks = made(&soup, 64.0);
+        // Without a material there is nothing to keep.
+        assert!(made(&soup, 64.0).looks.is_none());
+        let mut mesh = soup.mesh();
+        for part in &mut mesh.parts {
+            (part.surface.color, part.surface.metalness) = ([0.5, 0.25, 0.125, 1.0], 0.4);
+            (part.surface.roughness, part.surface.emission) = (0.3, [1.0, 0.5, 0.25]);
+        }
+        let bricks = bricks_of(&mesh, voxel_for(&mesh.bounds, 64.0), &mut |_| true).unwrap();
         let looks = bricks.looks.as_ref().unwrap();
         assert!(bricks.check().is_ok() && looks.bytes() < 4 * bricks.bytes());
         for p in on_surface(&soup, 200, &mut dice) {
-            let look = bricks.look_at(p).unwrap();
-            let off = look.normal.angle_between(p.normalize()).to_degrees();
-            assert!(off < 1.5, "{p}: the normal is off by {off} degrees");
-            // The default of glTF: white metal, rough.
-            assert!((look.color - DVec3::ONE).abs().max_element() < 1e-6 && look.emission == 0.0, "{look:?}");
-            assert!(look.metalness > 0.999 && look.roughness > 0.999, "{look:?}");
+            let look = bricks.looks_at(p);
+            // The color is that of the light where that is brighter.
+            let off = |found: DVec3, meant: f64| (found - meant * DVec3::new(1.0, 0.5, 0.25)).abs().max_element();
+            assert!((look.share - 1.0).abs() < 1e-9 && look.bend == DVec3::ZERO, "{look:?}");
+            assert!(off(look.color, 1.0) < 0.005 && off(look.emission, 1.0) < 0.03, "{look:?}");
+            assert!((look.metalness - 0.4).abs() < 0.034 && (look.roughness - 0.3).abs() < 0.008, "{look:?}");
         }
-        assert!(bricks.look_at(DVec3::ZERO).is_none() && bricks.look_at(DVec3::NAN).is_none());
+        assert!(bricks.looks_at(DVec3::ZERO).share == 0.0 && bricks.looks_at(DVec3::NAN).share == 0.0);
     }
 }
 
 #[test]
 fn bricks_survive_as_bytes() {
-    let mesh = Soup::torus(16).mesh();
+    let mut mesh = Soup::torus(16).mesh();
+    mesh.parts[0].surface.metalness = 0.0;
     let bricks = bricks_of(&mesh, 0.05, &mut |_| true).unwrap();
     let key = bricks_key(&mesh, 0.05);
     let bytes = to_bytes(&bricks, key);

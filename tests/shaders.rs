@@ -66,13 +66,25 @@ fn sources() -> Vec<(&'static str, String)> {
     plain
         .chain(of_copies)
         .chain(among)
-        .chain([("shade.wgsl", shown), ("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)])
+        .chain([
+            ("shade.wgsl", shown),
+            ("shade.wgsl", textured()),
+            ("shade.wgsl", carried()),
+            ("shade.wgsl", shade),
+            ("shadow.wgsl", meshes),
+        ])
         .collect()
 }
 
 /// The pass `shade` for scenes with textures.
 fn textured() -> String {
     assemble_featured("shade.wgsl", &["TEXTURES"]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The same with looks of models, and with copies that carry them.
+fn carried() -> String {
+    let features = ["TEXTURES", "LOOKS", SCENE_COPIES, "COPIES"];
+    assemble_featured("shade.wgsl", &features).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The module of a source, or the error in it.
@@ -303,7 +315,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
         layout!("FlatTexture" = FlatTexture { first, kind, second, image, scale, a, b, wrap }),
         layout!("TextureSet" = TextureSet { slots, base_weight, sharpness, strength }),
         layout!(
-            "GpuPlacedTextures" = GpuPlacedTextures { rows, textures, bump, cells, first, skew, last, repeated, steps }
+            "GpuPlacedTextures" =
+                GpuPlacedTextures { rows, textures, bump, copied_by, cells, first, skew, last, repeated, steps }
         ),
         flat_node(),
         flat_material(),

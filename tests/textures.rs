@@ -59,7 +59,7 @@ fn color_at(flat: &FlatScene, at: DVec3, eye: DVec3, footprint: f64) -> DVec3 {
     let way = at - eye;
     let there = textured_point(way.normalize(), way.length(), point.gradient.normalize(), footprint);
     let placed = gpu_textures(flat, &camera);
-    textured_mixture(&point.materials, &flat.materials, &flat.textures, &placed, &there).0.base_color
+    textured_mixture(&point.materials, flat, &placed, &there, None).0.base_color
 }
 
 const BOX: Shape = Shape::Box { size: [1.0, 1.2, 0.8], rounding: 0.1 };

@@ -54,8 +54,7 @@ const MODIFIER_ROWS: u32 = 6u;
 // The component of the dispatch, at a dynamic offset.
 @group(1) @binding(2) var<uniform> subject: Component;
 
-// Width of the textures that hold rows and words, line after line.
-const LINE: u32 = 4096u;
+#include "common/lines.wgsl"
 
 fn scene_row(at: u32) -> vec4f {
     return textureLoad(params, vec2u(at % LINE, at / LINE));

@@ -26,6 +26,7 @@ struct FlatMaterial {
 // The point whose mixture is asked for, and by how much its textures bend the normal there.
 var<private> mixture_point: TexturedPoint;
 var<private> mixture_bend: vec3f;
+var<private> mixture_pixel: vec2u;
 
 #end
 // The material of a mixture as `common/mixture.wgsl` encodes it.

@@ -3,8 +3,8 @@
 #include "light/shadow_settings.wgsl"
 #include "light/occlusion_share.wgsl"
 
-@group(3) @binding(4) var<uniform> shadow_settings: ShadowSettings;
-@group(3) @binding(5) var<storage, read> shadow_shares: array<u32>;
+@group(3) @binding(8) var<uniform> shadow_settings: ShadowSettings;
+@group(3) @binding(9) var<storage, read> shadow_shares: array<u32>;
 
 fn shares_byte(pixel: vec2u, slot: u32) -> f32 {
     let at = (pixel.y * view.width + pixel.x) * shadow_settings.stride;

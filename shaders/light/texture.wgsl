@@ -27,6 +27,8 @@ struct GpuPlacedTextures {
     rows: array<vec4f, 3>,
     textures: u32,
     bump: f32,
+    // 1 + the index of the instancer whose copies show it; 0 for none.
+    copied_by: u32,
     // The cells of an array, counted from that of the eye.
     cells: array<vec4f, 3>,
     first: vec3f,
@@ -41,6 +43,8 @@ const TEXTURE_CHECKER: u32 = 2u;
 const TEXTURE_BRICKS: u32 = 3u;
 const TEXTURE_NOISE: u32 = 4u;
 const TEXTURE_WOOD: u32 = 5u;
+// The looks of a model, in place of all textures of a material.
+const TEXTURE_MODEL: u32 = 7u;
 const TEXTURE_NONE: u32 = 0xffffffffu;
 const TEXTURE_TILES: f32 = 256.0;
 // A projection that weighs less is left out: it changes a color by less than one step of 8 bits.

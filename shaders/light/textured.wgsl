@@ -1,6 +1,12 @@
 // The textures of an entry of a mixture, applied to its material. See `light/texture.wgsl`.
 
 #include "light/texture.wgsl"
+#if LOOKS
+#include "light/model_look.wgsl"
+#end
+#if SCENE_COPIES
+#include "copy/textured.wgsl"
+#end
 
 // Most looks along the longer side of a footprint.
 const TEXTURE_LOOKS: f32 = 4.0;
@@ -101,11 +107,25 @@ struct TexturedMaterial {
 
 // The material of the entry at `index` with its textures.
 fn textured_material(material: FlatMaterial, index: u32, point: TexturedPoint) -> TexturedMaterial {
-    var found = TexturedMaterial(material, vec3f(0.0));
     let placed = placed_textures[index];
     if placed.textures == TEXTURE_NONE {
+        return TexturedMaterial(material, vec3f(0.0));
+    }
+#if SCENE_COPIES
+    if placed.copied_by > 0u {
+        let copy = textured_copy(placed.copied_by - 1u);
+        let there = textured_copied(copy, point);
+        var found = textured_placed(material, placed, there);
+        found.bend = textured_world_bend(copy, found.bend, there.normal);
         return found;
     }
+#end
+    return textured_placed(material, placed, point);
+}
+
+// The same at a point of the space from which the textures are placed.
+fn textured_placed(material: FlatMaterial, placed: GpuPlacedTextures, point: TexturedPoint) -> TexturedMaterial {
+    var found = TexturedMaterial(material, vec3f(0.0));
     let rows = mat3x3f(placed.rows[0].xyz, placed.rows[1].xyz, placed.rows[2].xyz);
     let axes = mat3x3f(normalize(rows[0]), normalize(rows[1]), normalize(rows[2]));
     let shift = vec3f(placed.rows[0].w, placed.rows[1].w, placed.rows[2].w);
@@ -114,6 +134,20 @@ fn textured_material(material: FlatMaterial, index: u32, point: TexturedPoint) -
     let sharpness = texture_sets[placed.textures].sharpness;
     let at = point.position * rows + shift - texture_repeated(placed, point.position);
     var sample = TextureSample(at, point.across * rows, point.along * rows, normal, vec3f(0.0));
+#if LOOKS
+    if texture_sets[placed.textures].slots[0].kind == TEXTURE_MODEL {
+        let model = texture_sets[placed.textures].slots[0];
+        let width = sqrt(length(sample.across) * length(sample.along));
+        let look = model_look(model.image, model.wrap, texture_wrapped(at), width);
+        let rest = 1.0 - look.share;
+        found.material.base_color = material.base_color * rest + look.color;
+        found.material.metalness = material.metalness * rest + look.metalness;
+        found.material.roughness = material.roughness * rest + look.roughness;
+        found.material.emission = material.emission * rest + look.emission;
+        found.bend = axes * look.bend;
+        return found;
+    }
+#end
     sample.weights = texture_weights(normal, sharpness);
     // For the slope of heights: steps that rounding does not hide.
     let width = max(length(sample.across), length(sample.along));

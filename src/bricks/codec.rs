@@ -9,7 +9,7 @@ use super::{BRICK_TEXELS, BrickGrid, Bricks, ContentHash, ContentKey, INSIDE, Lo
 /// The first bytes of a file of bricks.
 pub const CODEC_MAGIC: [u8; 8] = *b"isobrick";
 /// The version of the layout.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes before the texels.
 const HEADER: usize = 8 + 4 + 4 + 16 + 8 * 10 + 4 * 4 + 3 * 8;
 /// Bytes behind them.

@@ -4,9 +4,21 @@
 //! twice as large. From two voxels to the end of its samples, the distance by one level fades into that by the next, so
 //! that the field is continuous, and times [`BrickLevels::scale`] it is a lower bound of the distance to the surface of
 //! the finest, exact in sign and zeros.
+//!
+//! The looks of all levels stand behind the texels of all distances, after a header of one texel, and three for each level:
+//!
+//! | texel | holds |
+//! |---|---|
+//! | first | the number of levels |
+//! | then | as bits of floats: the voxels, counted from the first sample, at the origin of the space of looks, and how many one of its units has |
+//! | | cells along each axis, and the first texel of the distances, counted from the first of all levels |
+//! | | the first texel of the looks of bricks, and that of the looks themselves, counted in the same way |
+//!
+//! The space of looks has the middle of the surface as its origin, and half of its longest side as its unit.
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use isolith_geometry::Aabb;
 
 use super::encode::cells;
@@ -24,7 +36,12 @@ pub struct BrickLevels {
     all: Vec<Arc<Bricks>>,
     scale: f64,
     mark: u32,
+    /// Empty if any level has no looks.
+    look_header: Vec<[u32; 4]>,
 }
+
+/// Texels of a level in the header of looks, and those before the first.
+pub const LOOK_LEVEL: usize = 3;
 
 impl BrickLevels {
     /// These levels, the finest first; `None` if there are none.
@@ -47,7 +64,39 @@ impl BrickLevels {
     /// Measures these levels, once: both numbers take a look at every texel.
     fn of(all: Vec<Arc<Bricks>>) -> Self {
         let (scale, mark) = (scale_of(&all), mark_of(&all));
-        Self { all, scale, mark }
+        let mut made = Self { all, scale, mark, look_header: Vec::new() };
+        if made.all.iter().all(|bricks| bricks.looks.is_some()) {
+            made.look_header = look_header(&made);
+        }
+        made
+    }
+
+    /// The same without looks.
+    pub fn without_looks(&self) -> Self {
+        Self { look_header: Vec::new(), ..self.clone() }
+    }
+
+    /// Whether they have looks.
+    pub fn has_looks(&self) -> bool {
+        !self.look_header.is_empty()
+    }
+
+    /// The first texel of the header of looks.
+    pub fn first_look(&self) -> usize {
+        self.all.iter().map(|bricks| bricks.texels.len()).sum()
+    }
+
+    /// The origin of the space of looks, and its unit in meters.
+    pub fn look_space(&self) -> (DVec3, f64) {
+        let bounds = self.bounds();
+        (bounds.center(), bounds.half().max_element())
+    }
+
+    /// All texels, one run after the other.
+    pub fn runs(&self) -> impl Iterator<Item = &[[u32; 4]]> {
+        let looks = self.all.iter().filter(|_| self.has_looks()).filter_map(|bricks| bricks.looks.as_ref());
+        let distances = self.all.iter().map(|bricks| &*bricks.texels);
+        distances.chain([&*self.look_header]).chain(looks.map(|looks| &*looks.texels))
     }
 
     /// The size of the voxels of the level after `levels` levels, whose last one is this; `None` if none is needed.
@@ -85,10 +134,31 @@ impl BrickLevels {
         finest.bounds.expanded(finest.grid.voxel)
     }
 
-    /// Texels of all levels.
+    /// Texels of all levels, with those of their looks.
     pub fn texels(&self) -> usize {
-        self.all.iter().map(|bricks| bricks.texels.len()).sum()
+        self.runs().map(<[_]>::len).sum()
     }
+}
+
+/// See the module.
+fn look_header(levels: &BrickLevels) -> Vec<[u32; 4]> {
+    let (center, unit) = levels.look_space();
+    let mut first = 0;
+    let mut looks_at = levels.first_look() + 1 + LOOK_LEVEL * levels.all.len();
+    let mut out = vec![[levels.all.len() as u32, 0, 0, 0]];
+    for bricks in &levels.all {
+        let Some(looks) = &bricks.looks else { continue };
+        let voxel = bricks.grid.voxel;
+        let bits = |v: f64| (v as f32).to_bits();
+        let [x, y, z] = ((center - bricks.grid.origin) / voxel).to_array().map(bits);
+        let [nx, ny, nz] = bricks.grid.cells;
+        out.push([x, y, z, bits(unit / voxel)]);
+        out.push([nx, ny, nz, first as u32]);
+        out.push([looks_at as u32, looks_at as u32 + looks.first_look, 0, 0]);
+        first += bricks.texels.len();
+        looks_at += looks.texels.len();
+    }
+    out
 }
 
 /// See [`BrickLevels::mark`]; by FNV-1a (Fowler, Noll, Vo).

@@ -11,15 +11,14 @@
 //! |---|---|
 //! | first word 0–23 | red, green and blue as sRGB, 8 bits each |
 //! | 24–31 | emission in the same color: 0 for none, or its factor is 2^((n − 128) / 8) |
-//! | second word 0–10, 11–21 | the normal as octahedral coordinates, from −1 to 1 |
+//! | second word 0–6, 7–13, 14–20 | by how much the normal is bent along each axis: the square of (n − 64) / 63, with its sign |
 //! | 22–27 | roughness in 1/63 |
 //! | 28–31 | metalness in 1/15 |
 //!
-//! All corners of a voxel that the surface passes have a look, so that looks are interpolated as distances are. The
-//! octahedral coordinates of a normal are its first two over the sum of all three without sign; below, folded over
-//! (Cigolle et al., "A survey of efficient representations for independent unit vectors", 2014).
+//! All corners of a voxel that the surface passes have a look, so that looks are interpolated as distances are. Normals
+//! themselves are those of the field: bends are what a texture of normals adds, so that they hold in blends too.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, Bricks};
 
@@ -46,8 +45,25 @@ pub struct VoxelLook {
     pub roughness: f64,
     /// Emitted light as a factor of the color.
     pub emission: f64,
-    /// Of unit length, out of the solid.
-    pub normal: DVec3,
+    /// What is added to the unit normal of the surface.
+    pub bend: DVec3,
+}
+
+/// Looks with their weights, summed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LookSum {
+    /// Linear color.
+    pub color: DVec3,
+    /// Emitted light.
+    pub emission: DVec3,
+    /// Metalness.
+    pub metalness: f64,
+    /// Roughness.
+    pub roughness: f64,
+    /// Bends of the normal.
+    pub bend: DVec3,
+    /// The sum of the weights: 1 where everything around has a look, 0 where nothing has.
+    pub share: f64,
 }
 
 impl std::fmt::Debug for Looks {
@@ -147,86 +163,73 @@ impl Looks {
 }
 
 impl Bricks {
-    /// The look between the samples around a point; `None` where none of them has any. Near the surface all have.
-    pub fn look_at(&self, p: DVec3) -> Option<VoxelLook> {
-        let looks = self.looks.as_ref()?;
-        let (brick, voxel, part) = self.voxel_around(p)?;
-        let (mut sum, mut all) = (VoxelLook::NONE, 0.0);
+    /// The looks of the samples around a point. On the surface all have one.
+    pub fn looks_at(&self, p: DVec3) -> LookSum {
+        let mut sum = LookSum::default();
+        let Some((looks, (brick, voxel, part))) = self.looks.as_ref().zip(self.voxel_around(p)) else { return sum };
         for i in 0..8 {
             let corner = [0, 1, 2].map(|axis| voxel[axis] + (i >> axis & 1));
             let share = |axis: usize| if i >> axis & 1 == 1 { part[axis] } else { 1.0 - part[axis] };
             let weight = share(0) * share(1) * share(2);
             let sample = corner[0] + BRICK_SAMPLES * (corner[1] + BRICK_SAMPLES * corner[2]);
             if let Some(look) = looks.of(brick, sample) {
-                sum = sum.plus(&look, weight);
-                all += weight;
+                sum.add(&look.into(), weight);
             }
         }
-        (all > 0.0).then(|| sum.over(all))
+        sum
+    }
+}
+
+impl LookSum {
+    /// Adds looks with a weight.
+    pub fn add(&mut self, other: &Self, weight: f64) {
+        self.color += other.color * weight;
+        self.emission += other.emission * weight;
+        self.metalness += other.metalness * weight;
+        self.roughness += other.roughness * weight;
+        self.bend += other.bend * weight;
+        self.share += other.share * weight;
+    }
+}
+
+impl From<VoxelLook> for LookSum {
+    fn from(look: VoxelLook) -> Self {
+        let VoxelLook { color, metalness, roughness, emission, bend } = look;
+        Self { color, emission: color * emission, metalness, roughness, bend, share: 1.0 }
     }
 }
 
 impl VoxelLook {
-    const NONE: Self = Self { color: DVec3::ZERO, metalness: 0.0, roughness: 0.0, emission: 0.0, normal: DVec3::ZERO };
-
-    fn plus(&self, other: &Self, weight: f64) -> Self {
-        Self {
-            color: self.color + other.color * weight,
-            metalness: self.metalness + other.metalness * weight,
-            roughness: self.roughness + other.roughness * weight,
-            emission: self.emission + other.emission * weight,
-            normal: self.normal + other.normal * weight,
-        }
-    }
-
-    fn over(&self, sum: f64) -> Self {
-        let mean = Self::NONE.plus(self, 1.0 / sum);
-        Self { normal: mean.normal.try_normalize().unwrap_or(DVec3::Y), ..mean }
-    }
-
     /// The two words of the look.
     pub fn packed(&self) -> [u32; 2] {
         let whole = |v: f64, most: u32| (v.clamp(0.0, 1.0) * f64::from(most)).round() as u32;
         let [r, g, b] = self.color.to_array().map(|v| whole(srgb_from_linear(v.clamp(0.0, 1.0)), 255));
         let emission =
             if self.emission > 0.0 { (self.emission.log2() * 8.0 + 128.0).round().clamp(1.0, 255.0) as u32 } else { 0 };
-        let at = octahedral(self.normal) * 0.5 + 0.5;
-        let normal = whole(at.x, 2_047) | whole(at.y, 2_047) << 11;
+        let steps = |v: f64| (64.0 + (v.abs().min(1.0).sqrt() * 63.0).round().copysign(v)) as u32;
+        let [x, y, z] = self.bend.to_array().map(steps);
         [
             r | g << 8 | b << 16 | emission << 24,
-            normal | whole(self.roughness, 63) << 22 | whole(self.metalness, 15) << 28,
+            x | y << 7 | z << 14 | whole(self.roughness, 63) << 22 | whole(self.metalness, 15) << 28,
         ]
     }
 
     /// The look that two words hold.
     pub fn unpacked([first, second]: [u32; 2]) -> Self {
         let share = |word: u32, shift: u32, most: u32| f64::from(word >> shift & most) / f64::from(most);
-        let at = DVec2::new(share(second, 0, 2_047), share(second, 11, 2_047)) * 2.0 - 1.0;
+        let bend = |shift: u32| {
+            let root = (f64::from(second >> shift & 127) - 64.0) / 63.0;
+            root * root.abs()
+        };
         let emission = first >> 24;
         Self {
             color: DVec3::from([0, 8, 16].map(|shift| linear_from_srgb(share(first, shift, 255)))),
             metalness: share(second, 28, 15),
             roughness: share(second, 22, 63),
             emission: if emission == 0 { 0.0 } else { ((f64::from(emission) - 128.0) / 8.0).exp2() },
-            normal: from_octahedral(at),
+            bend: DVec3::new(bend(0), bend(7), bend(14)),
         }
     }
-}
-
-fn octahedral(normal: DVec3) -> DVec2 {
-    let flat = normal / normal.abs().element_sum().max(f64::MIN_POSITIVE);
-    if flat.z >= 0.0 { flat.truncate() } else { folded(flat.truncate()) }
-}
-
-fn from_octahedral(at: DVec2) -> DVec3 {
-    let z = 1.0 - at.abs().element_sum();
-    let flat = if z >= 0.0 { at } else { folded(at) };
-    flat.extend(z).normalize()
-}
-
-fn folded(at: DVec2) -> DVec2 {
-    let sign = |v: f64| if v < 0.0 { -1.0 } else { 1.0 };
-    DVec2::new((1.0 - at.y.abs()) * sign(at.x), (1.0 - at.x.abs()) * sign(at.y))
 }
 
 /// The transfer function of sRGB (IEC 61966-2-1).
@@ -247,16 +250,18 @@ mod tests {
     fn looks_survive_their_two_words() {
         for i in 0..2_000 {
             let share = |k: u32| f64::from((i * 7_919 + k * 104_729) % 1_009) / 1_008.0;
-            let normal = DVec3::new(share(1) - 0.5, share(2) - 0.5, share(3) - 0.5).normalize_or(DVec3::X);
+            let bend = DVec3::new(share(1), share(2), share(3)) * 2.0 - 1.0;
             let look = VoxelLook {
                 color: DVec3::new(share(4), share(5), share(6)),
                 metalness: share(7),
                 roughness: share(8),
                 emission: if i % 3 == 0 { 0.0 } else { 20.0 * share(9) + 0.01 },
-                normal,
+                bend: if i % 5 == 0 { DVec3::ZERO } else { bend },
             };
             let again = VoxelLook::unpacked(look.packed());
-            assert!(again.normal.angle_between(normal).to_degrees() < 0.15, "{normal} became {}", again.normal);
+            for (found, meant) in again.bend.to_array().into_iter().zip(look.bend.to_array()) {
+                assert!((found - meant).abs() <= meant.abs().sqrt() / 63.0 + 1e-4, "{look:?} became {again:?}");
+            }
             assert!((again.color - look.color).abs().max_element() < 0.005, "{look:?} became {again:?}");
             assert!(
                 (again.metalness - look.metalness).abs() < 0.034 && (again.roughness - look.roughness).abs() < 0.008
@@ -271,7 +276,9 @@ mod tests {
         samples[100] = 100;
         let marks = surface_samples(&samples);
         assert_eq!(marks.iter().filter(|is| **is).count(), 27, "all neighbors of the one inside");
-        let look = |i: usize| VoxelLook { roughness: (i % 64) as f64 / 63.0, normal: DVec3::Z, ..VoxelLook::NONE };
+        let (color, bend) = (DVec3::ONE, DVec3::ZERO);
+        let look =
+            |i: usize| VoxelLook { color, bend, metalness: 0.0, roughness: (i % 64) as f64 / 63.0, emission: 0.0 };
         let of = |shift: usize| (marks, (0..BRICK_VOLUME).filter(|i| marks[*i]).map(|i| look(i + shift)).collect());
         let looks = Looks::new(vec![of(0), ([false; BRICK_VOLUME], Vec::new()), of(5)].into_iter());
         for i in 0..BRICK_VOLUME {

@@ -32,8 +32,8 @@ pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
 pub use digest::{ContentHash, ContentKey};
 pub use encode::{BrickContent, BrickError, encode};
 pub use grid::BrickGrid;
-pub use levels::{BrickLevels, FADE_START, LEVEL_RATIO, MAX_LEVELS};
-pub use looks::{LOOK_HEADER, Looks, VoxelLook, linear_from_srgb, surface_samples};
+pub use levels::{BrickLevels, FADE_START, LEVEL_RATIO, LOOK_LEVEL, MAX_LEVELS};
+pub use looks::{LOOK_HEADER, LookSum, Looks, VoxelLook, linear_from_srgb, surface_samples};
 pub use placeholder::placeholder;
 
 use glam::DVec3;

@@ -45,6 +45,8 @@ pub struct PreferenceValues {
     pub unit: String,
     /// Samples per pixel of a new viewport; `None` for the program's own choice.
     pub samples: Option<u32>,
+    /// Most MiB that the bricks of models take; `None` for as many as there may be.
+    pub brick_mebibytes: Option<u32>,
 }
 
 impl Default for PreferenceValues {
@@ -59,6 +61,7 @@ impl Default for PreferenceValues {
             scale: 1.0,
             unit: String::new(),
             samples: None,
+            brick_mebibytes: None,
         }
     }
 }

@@ -12,7 +12,7 @@ use super::messages::Message;
 use super::root::Editor;
 use super::{insertion, portal};
 use isolith_document::Edit;
-use isolith_scene::{MeshNode, Node, NodeKind};
+use isolith_scene::{MeshNode, Node, NodeId, NodeKind, Object, Shape};
 
 /// An artist cannot cancel a dialog faster than this: a quicker cancel means that no dialog opened.
 const NO_DIALOG: Duration = Duration::from_millis(600);
@@ -182,17 +182,27 @@ impl Editor {
         insertion::node(&mut self.state, Node::new(name, NodeKind::Mesh(MeshNode::new(relative))));
     }
 
-    /// Gives all meshes of a file another file.
+    /// Gives all meshes of a file another file, and all fields of one. Those without a file get one if they are
+    /// selected.
     fn relink(&mut self, old: &str, path: &Path) {
         let Some(relative) = self.named_from_scene(path) else { return };
         let scene = self.state.session.document.snapshot();
-        self.state.session.document.begin_step(format!("Relink {old}"));
+        let chosen: Vec<NodeId> = self.state.session.document.selection().to_vec();
+        let step = if old.is_empty() { "Choose a model".to_owned() } else { format!("Relink {old}") };
+        self.state.session.document.begin_step(step);
         for node in scene.nodes() {
-            if let NodeKind::Mesh(mesh) = &node.kind
-                && mesh.path == old
-            {
-                let mesh = MeshNode { path: relative.clone(), ..mesh.clone() };
-                self.state.session.apply(Edit::Replace(Node { kind: NodeKind::Mesh(mesh), ..Node::clone(node) }));
+            if old.is_empty() && !chosen.contains(&node.id) {
+                continue;
+            }
+            let mut kind = node.kind.clone();
+            let place = match &mut kind {
+                NodeKind::Mesh(mesh) => &mut mesh.path,
+                NodeKind::Object(Object { shape: Shape::MeshField { file, .. }, .. }) => &mut file.path,
+                _ => continue,
+            };
+            if place == old {
+                place.clone_from(&relative);
+                self.state.session.apply(Edit::Replace(Node { kind, ..Node::clone(node) }));
             }
         }
         self.state.session.document.end_gesture();

@@ -15,6 +15,7 @@ use super::{
     inspector_scene, inspector_transform, inspector_types, selection, theme, widgets,
 };
 use isolith_document::Edit;
+use isolith_jobs::Task;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeKind};
 
@@ -22,6 +23,8 @@ use isolith_scene::{Node, NodeKind};
 #[derive(Default)]
 pub struct Inspector {
     transform: inspector_transform::EulerMemory,
+    /// The tasks that run in this frame.
+    tasks: Vec<Task>,
 }
 
 impl Panel for Inspector {
@@ -38,6 +41,7 @@ impl Panel for Inspector {
     }
 
     fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
+        self.tasks = state.derived.jobs().listed();
         widgets::fixed(ui, |ui| self.show(ui, &mut state.session, &mut state.materials));
     }
 }
@@ -106,7 +110,7 @@ impl Inspector {
         match &active.kind {
             NodeKind::Group(_) => inspector_blends::group(ui, &mut edit),
             NodeKind::Object(_) => {
-                inspector_kinds::shape(ui, &mut edit);
+                inspector_kinds::shape(ui, &mut edit, &self.tasks);
                 inspector_material::show(ui, &mut edit, library);
             }
             NodeKind::Mesh(mesh) => {

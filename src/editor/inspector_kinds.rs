@@ -4,7 +4,8 @@ use egui::{RichText, Ui};
 
 use super::multi_edit::MultiEdit;
 use super::widgets::{self, MIXED};
-use super::{inspector_params, shape_change, theme};
+use super::{inspector_model, inspector_params, shape_change, theme};
+use isolith_jobs::Task;
 use isolith_scene::{CameraNode, MeshNode, Node, NodeKind, Object, Params, Part, ShapeKind};
 
 fn object(n: &Node) -> Option<&Object> {
@@ -16,7 +17,7 @@ fn object_mut(n: &mut Node) -> Option<&mut Object> {
 }
 
 /// The kind of the shape and its parameters, generated from the table of shapes.
-pub fn shape(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
+pub fn shape(ui: &mut Ui, edit: &mut MultiEdit<'_>, tasks: &[Task]) {
     widgets::card(ui, "Shape", |ui| {
         edit.choice(
             ui,
@@ -40,6 +41,7 @@ pub fn shape(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         if kind.params().is_empty() {
             ui.label(RichText::new("No parameters: position and rotation say all.").color(theme::WEAK));
         }
+        inspector_model::show(ui, edit, tasks);
     });
 }
 

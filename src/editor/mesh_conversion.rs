@@ -35,7 +35,8 @@ fn convert(session: &mut EditSession, to: impl Fn(&Node, &Scene) -> Option<Node>
     });
 }
 
-/// The field of a model that is drawn as triangles. Without a material of its own it takes the first of the scene.
+/// The field of a model that is drawn as triangles. Without a material of its own it shows those of its file; where they
+/// have nothing to say, the first of the scene.
 fn field_of(node: &Node, scene: &Scene) -> Option<Node> {
     let NodeKind::Mesh(MeshNode { path, material, clip, clip_time, .. }) = &node.kind else { return None };
     let shape = Shape::MeshField {
@@ -44,6 +45,7 @@ fn field_of(node: &Node, scene: &Scene) -> Option<Node> {
         clip_time: *clip_time,
         resolution: 0.0,
         voxel_size: 0.0,
+        file_materials: material.is_none(),
     };
     let material = material.or_else(|| scene.materials().first().map(|material| material.id))?;
     Some(Node { kind: NodeKind::Object(Object { shape, material }), ..node.clone() })
@@ -51,13 +53,17 @@ fn field_of(node: &Node, scene: &Scene) -> Option<Node> {
 
 /// The triangles of a field; what only fields can have is left out.
 fn mesh_of(node: &Node) -> Option<Node> {
-    let NodeKind::Object(Object { shape: Shape::MeshField { file, clip, clip_time, .. }, .. }) = &node.kind else {
+    let NodeKind::Object(Object { shape: Shape::MeshField { file, clip, clip_time, file_materials, .. }, material }) =
+        &node.kind
+    else {
         return None;
     };
     if file.path.is_empty() {
         return None;
     }
-    let mesh = MeshNode { clip: clip.clone(), clip_time: *clip_time, ..MeshNode::new(file.path.clone()) };
+    let own = (!file_materials).then_some(*material);
+    let mesh =
+        MeshNode { clip: clip.clone(), clip_time: *clip_time, material: own, ..MeshNode::new(file.path.clone()) };
     let plain = Node::new(node.name.clone(), NodeKind::Mesh(mesh));
     Some(Node {
         id: node.id,

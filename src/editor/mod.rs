@@ -98,6 +98,7 @@ mod inspector_instancer;
 mod inspector_kinds;
 mod inspector_lists;
 mod inspector_material;
+mod inspector_model;
 mod inspector_palette;
 mod inspector_params;
 mod inspector_points;

@@ -32,6 +32,9 @@ const SCALES: [(f32, &str); 9] = [
     (2.5, "250 %"),
 ];
 
+/// The budgets for bricks of models that are offered, in MiB.
+const BRICKS: [(u32, &str); 5] = [(16, "16"), (32, "32"), (64, "64"), (128, "128"), (256, "256")];
+
 /// The samples that are offered.
 const SAMPLES: [(u32, &str); 5] = [(1, "1"), (16, "16"), (64, "64"), (256, "256"), (1024, "1024")];
 
@@ -166,6 +169,17 @@ fn general(state: &mut EditorState, ui: &mut Ui) {
             if let Some(index) = chosen {
                 state.view.samples = SAMPLES[index].0;
                 state.preferences.change(|values| values.samples = Some(SAMPLES[index].0));
+            }
+        });
+        let help = "MiB of graphics memory for models that are fields; beyond them the largest get coarser voxels";
+        widgets::row(ui, "Model bricks", help, |ui| {
+            let budgets: Vec<_> = (0..BRICKS.len()).collect();
+            let most = values.brick_mebibytes.unwrap_or(BRICKS[BRICKS.len() - 1].0);
+            let current = BRICKS.iter().position(|(mebibytes, _)| *mebibytes == most);
+            let chosen = widgets::choice(ui, "Model bricks", current, &budgets, |index| BRICKS[index].1, |_| "").1;
+            if let Some(index) = chosen {
+                state.derived.set_brick_budget(BRICKS[index].0);
+                state.preferences.change(|values| values.brick_mebibytes = Some(BRICKS[index].0));
             }
         });
     });

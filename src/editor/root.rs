@@ -128,6 +128,9 @@ impl Editor {
         if let Some(samples) = self.state.preferences.values().samples {
             self.state.view.samples = samples.clamp(1, MOST_SAMPLES);
         }
+        if let Some(mebibytes) = self.state.preferences.values().brick_mebibytes {
+            self.state.derived.set_brick_budget(mebibytes);
+        }
         if let Some(problem) = self.state.preferences.take_problem() {
             self.report(Message::warning(problem));
         }

@@ -105,6 +105,10 @@ fn counts(state: &EditorState, ui: &mut Ui) {
     let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
     let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
     ui.label(RichText::new(text).color(theme::WEAK));
+    if let Some(text) = bricks_text(state) {
+        ui.label(RichText::new("·").color(theme::RESTING));
+        ui.label(RichText::new(text).color(theme::WEAK));
+    }
     let active = state.session.selected().pop();
     let listed = active.as_ref().and_then(|node| instancing::listed_text(state.flat(), node.id));
     let counted = || active.as_deref().and_then(instancing::instancer).and_then(instancing::count_text);
@@ -112,6 +116,13 @@ fn counts(state: &EditorState, ui: &mut Ui) {
         ui.label(RichText::new("·").color(theme::RESTING));
         ui.label(RichText::new(text).color(theme::WEAK));
     }
+}
+
+/// What the bricks of models take, and may take; `None` without any.
+fn bricks_text(state: &EditorState) -> Option<String> {
+    let texels = state.flat().bricks.texels();
+    let most = state.derived.brick_budget();
+    (texels > 0).then(|| format!("bricks {:.1} of {most} MiB", texels as f64 / 65_536.0))
 }
 
 /// The running job, a problem of the scene, or a hint on the mouse.

@@ -265,7 +265,7 @@ impl<'a, 'b> Collector<'a, 'b> {
         let Value::Leaf { prepared, object_from_world, .. } = &mut operand.value else {
             unreachable!("made as a leaf")
         };
-        if self.textured.is_placed(object.material) {
+        if self.textured.is_placed(object.material) || prepared.has_looks {
             *object_from_world = Some(Rc::new(world.inverse()));
         }
         if object.shape.is_blank(&prepared.bounds) {

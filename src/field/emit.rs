@@ -1,5 +1,7 @@
 //! Writes the fold of one component into the arrays, relative to the component's origin.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
@@ -9,12 +11,13 @@ use super::modifier_table::modifier_payload_row;
 use super::operand::{Operand, Value};
 use super::prepare::first_texels;
 use super::stack::shallow;
+use isolith_bricks::BrickLevels;
 use isolith_geometry::Aabb;
 use isolith_scene::{BlendKernel, MaterialId, ModifierKind, ShapeKind};
 
 /// A leaf's use of a material.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MaterialUse {
+pub(super) struct MaterialUse<'a> {
     /// The material.
     pub id: MaterialId,
     /// The space of the object, if textures of the material need it. Within modifiers that stay in the arrays it is
@@ -22,6 +25,15 @@ pub(super) struct MaterialUse {
     pub object_from_world: Option<DAffine3>,
     /// The innermost array around it.
     pub repeated: Option<RepeatedSpace>,
+    /// The model whose looks it shows.
+    pub looks: Option<&'a Arc<BrickLevels>>,
+}
+
+impl MaterialUse<'_> {
+    /// A material as it is, wherever the object stands.
+    pub fn plain(id: MaterialId) -> Self {
+        Self { id, object_from_world: None, repeated: None, looks: None }
+    }
 }
 
 /// The space that a fold is in.
@@ -38,7 +50,7 @@ struct Within {
 pub(super) fn emit(
     flat: &mut FlatScene,
     operands: &[Operand<'_>],
-    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse<'_>) -> u32,
 ) -> Component {
     let bounds = fold_bounds(operands).bounds;
     let shallow = shallow(operands);
@@ -249,7 +261,7 @@ fn emit_fold(
     flat: &mut FlatScene,
     operands: &[Operand<'_>],
     within: &Within,
-    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse<'_>) -> u32,
 ) -> u32 {
     let alike = |a: &Operand<'_>, b: &Operand<'_>| {
         let skippable = |o: &Operand<'_>| o.bound_slope > 0.0 && o.join.is_skipped_far_off();
@@ -271,7 +283,7 @@ fn emit_runs(
     flat: &mut FlatScene,
     row: &[Operand<'_>],
     within: &Within,
-    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse<'_>) -> u32,
 ) -> u32 {
     let mut stack = 0;
     for run in row.chunks(row.len().div_ceil(RUN_LENGTH).max(RUN_LENGTH)) {
@@ -347,7 +359,7 @@ fn emit_operand(
     flat: &mut FlatScene,
     operand: &Operand<'_>,
     within: &Within,
-    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse<'_>) -> u32,
 ) -> u32 {
     let index = flat.nodes.len();
     let params = flat.params.len() as u32;
@@ -358,7 +370,9 @@ fn emit_operand(
     match &operand.value {
         Value::Leaf { local_from_world, distance_scale, prepared, material: id, object_from_world } => {
             let object_from_world = object_from_world.as_deref().map(|object| *object * within.space_from_world);
-            let material = material(flat, MaterialUse { id: *id, object_from_world, repeated: within.repeated });
+            let looks = prepared.bricks.as_ref().filter(|_| prepared.has_looks);
+            let user = MaterialUse { id: *id, object_from_world, repeated: within.repeated, looks };
+            let material = material(flat, user);
             flat.nodes.push(FlatNode { code: code(prepared.kind as u32), extent: 1, params, material });
             flat.params.push([blend_params[0], *distance_scale as f32, blend_params[1], blend_params[2]]);
             flat.params.extend(placing_rows(local_from_world, within.origin));

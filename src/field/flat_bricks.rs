@@ -32,11 +32,11 @@ impl FlatBricks {
     /// The texel at an index; zero behind the last.
     pub fn texel(&self, index: usize) -> [u32; 4] {
         let mut at = index;
-        for bricks in self.all.iter().flat_map(|levels| levels.all()) {
-            if let Some(texel) = bricks.texels.get(at) {
+        for run in self.all.iter().flat_map(|levels| levels.runs()) {
+            if let Some(texel) = run.get(at) {
                 return *texel;
             }
-            at -= bricks.texels.len();
+            at -= run.len();
         }
         [0; 4]
     }

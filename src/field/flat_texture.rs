@@ -10,6 +10,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
+use isolith_bricks::BrickLevels;
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{
     ColorSpace, Material, MaterialId, PatternKind, Pyramid, TexelForm, TextureSource, TextureSpace, TextureWrap,
@@ -23,8 +24,10 @@ pub struct FlatTextures {
     pub placed: Vec<Option<PlacedTextures>>,
     /// The textures of each material that has some.
     pub sets: Vec<TextureSet>,
-    /// The materials of the sets.
-    pub set_ids: Vec<MaterialId>,
+    /// The materials of the sets; `None` for those of a model's file.
+    pub set_ids: Vec<Option<MaterialId>>,
+    /// The models whose looks are shown.
+    pub looks: Vec<Arc<BrickLevels>>,
     /// The images.
     pub images: Vec<FlatImage>,
 }
@@ -40,6 +43,19 @@ pub struct PlacedTextures {
     pub set: u32,
     /// The array that repeats it, if any.
     pub repeated: Option<RepeatedSpace>,
+    /// The instancer whose copies show it. The world is then the space of a copy.
+    pub instancer: Option<u32>,
+}
+
+/// Where an object uses textures.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextureUse {
+    /// The space of the object.
+    pub object_from_world: DAffine3,
+    /// See [`PlacedTextures::repeated`].
+    pub repeated: Option<RepeatedSpace>,
+    /// See [`PlacedTextures::instancer`].
+    pub instancer: Option<u32>,
 }
 
 /// The cells of an array, whose copies each show the same part of a texture.
@@ -142,6 +158,9 @@ impl FlatTexture {
     pub const WOOD: u32 = 5;
     /// Marble.
     pub const MARBLE: u32 = 6;
+    /// The looks of a model: `image` is the first texel of their header, `wrap` the first of the model, `a` its index
+    /// among those of [`FlatTextures::looks`]. It stands in place of all textures of the material.
+    pub const LOOKS: u32 = 7;
 }
 
 /// The textures of a material as the GPU reads them.
@@ -170,8 +189,10 @@ pub struct GpuPlacedTextures {
     pub textures: u32,
     /// Height of the embossing, in meters of the world.
     pub bump: f32,
-    /// Padding of eight bytes.
-    pub _padding: [u32; 2],
+    /// 1 + the index of the instancer whose copies show it; 0 for none.
+    pub copied_by: u32,
+    /// Padding of four bytes.
+    pub _padding: u32,
     /// From positions relative to the eye to cells of an array, counted from that of the eye, by rows.
     pub cells: [[f32; 4]; 3],
     /// First cell.
@@ -194,8 +215,9 @@ impl GpuPlacedTextures {
     /// The set of an entry without textures.
     pub const NONE: u32 = u32::MAX;
 
-    /// The textures as seen from `eye`.
+    /// The textures as seen from `eye`; those of copies from the origin of their space.
     pub fn new(placed: &PlacedTextures, eye: DVec3) -> Self {
+        let eye = if placed.instancer.is_some() { DVec3::ZERO } else { eye };
         let matrix = placed.texture_from_world.matrix3;
         let mut at = placed.texture_from_world.transform_point3(eye);
         let mut own = Self::none();
@@ -214,7 +236,8 @@ impl GpuPlacedTextures {
         }
         let at = at - TILES * (at / TILES).round();
         let rows = [0, 1, 2].map(|i| matrix.row(i).extend(at[i]).as_vec4().to_array());
-        Self { rows, textures: placed.set, bump: placed.bump as f32, ..own }
+        let copied_by = placed.instancer.map_or(0, |index| index + 1);
+        Self { rows, textures: placed.set, bump: placed.bump as f32, copied_by, ..own }
     }
 
     /// An entry without textures.
@@ -224,38 +247,69 @@ impl GpuPlacedTextures {
 }
 
 impl FlatTextures {
-    /// Places the textures of the material at `at` of the scene's materials; `object_from_world` is the space of the
-    /// object that uses it.
-    pub(super) fn place(
-        &mut self,
-        material: &Material,
-        at: usize,
-        object_from_world: &DAffine3,
-        repeated: Option<RepeatedSpace>,
-    ) {
+    /// Places the textures of the material at `at` of the scene's materials.
+    pub(super) fn place(&mut self, material: &Material, at: usize, space: TextureUse) {
         let Some(set) = self.set(material) else { return };
         self.placed.resize(at, None);
-        self.placed.push(placed(material, set as u32, object_from_world, repeated));
+        self.placed.push(placed(material, set as u32, space));
     }
 
-    /// Moves the textures at `at` to another place of their object.
+    /// Places the looks of a model there, whose first texel is `first`.
+    pub(super) fn place_looks(&mut self, model: &Arc<BrickLevels>, first: u32, at: usize, space: TextureUse) {
+        let header = first + model.first_look() as u32;
+        let is_known = |set: &TextureSet| set.slots[0].kind == FlatTexture::LOOKS && set.slots[0].image == header;
+        let set = self.sets.iter().position(is_known).unwrap_or_else(|| {
+            let index = self.looks.len() as f32;
+            let looks = FlatTexture {
+                kind: FlatTexture::LOOKS,
+                image: header,
+                wrap: first,
+                a: index,
+                ..FlatTexture::default()
+            };
+            let none = FlatTexture::default();
+            self.sets.push(TextureSet { slots: [looks, none, none, none], ..TextureSet::zeroed() });
+            self.set_ids.push(None);
+            self.looks.push(model.clone());
+            self.sets.len() - 1
+        });
+        self.placed.resize(at, None);
+        self.placed.push(Some(placed_looks(model, set as u32, space)));
+    }
+
+    /// Whether copies of instancers carry some.
+    pub fn are_carried(&self) -> bool {
+        self.placed.iter().flatten().any(|placed| placed.instancer.is_some())
+    }
+
+    /// Whether the material at `at` shows the looks of a model.
+    pub(super) fn has_looks(&self, at: usize) -> bool {
+        let placed = self.placed.get(at).copied().flatten();
+        placed.is_some_and(|placed| self.sets[placed.set as usize].slots[0].kind == FlatTexture::LOOKS)
+    }
+
+    /// Moves the textures at `at` to another place of their object, or the looks of a model.
     pub(super) fn replace(
         &mut self,
         material: &Material,
+        looks: Option<&Arc<BrickLevels>>,
         at: usize,
-        object_from_world: &DAffine3,
-        repeated: Option<RepeatedSpace>,
+        space: TextureUse,
     ) {
         if let Some(entry) = self.placed.get_mut(at)
-            && let Some(PlacedTextures { set, .. }) = *entry
+            && let Some(PlacedTextures { set, instancer, .. }) = *entry
         {
-            *entry = placed(material, set, object_from_world, repeated);
+            let space = TextureUse { instancer, ..space };
+            *entry = match looks {
+                Some(model) => Some(placed_looks(model, set, space)),
+                None => placed(material, set, space),
+            };
         }
     }
 
     /// The index of a material's textures, if it has some.
     fn set(&mut self, material: &Material) -> Option<usize> {
-        if let Some(known) = self.set_ids.iter().rposition(|id| *id == material.id) {
+        if let Some(known) = self.set_ids.iter().rposition(|id| *id == Some(material.id)) {
             return Some(known);
         }
         let Textures::Triplanar { color, roughness, normal, height, sharpness, .. } = &material.textures else {
@@ -279,7 +333,7 @@ impl FlatTextures {
             strength: strength as f32,
             _padding: 0,
         });
-        self.set_ids.push(material.id);
+        self.set_ids.push(Some(material.id));
         Some(self.sets.len() - 1)
     }
 
@@ -351,7 +405,7 @@ impl FlatImage {
     /// Bytes on the device.
     fn bytes(&self) -> usize {
         let texels: usize = self.pyramid.levels[self.skipped..].iter().map(|level| level.texels.len()).sum();
-        (texels + HEADER) * size_of::<u32>()
+        (texels + IMAGE_HEADER) * size_of::<u32>()
     }
 
     /// How much smaller it is than its file.
@@ -361,35 +415,24 @@ impl FlatImage {
 }
 
 /// Words of an image's header: width, height, number of levels, form, and where its levels begin.
-pub const HEADER: usize = 20;
+pub(super) const IMAGE_HEADER: usize = 20;
 /// Most levels of an image.
-const MOST_LEVELS: usize = HEADER - 4;
+const MOST_LEVELS: usize = IMAGE_HEADER - 4;
 const _: () = assert!(isolith_scene::limits::MAX_IMAGE_SIDE < 1 << MOST_LEVELS);
 const _: () = assert!(MAX_TEXTURE_BYTES < 1 << 32);
 
-/// All images in words, as the GPU reads them: their headers, then the texels of their levels.
-pub fn texel_words(images: &[FlatImage]) -> Vec<u32> {
-    let mut words = vec![0; images.len() * HEADER];
-    for (at, image) in images.iter().enumerate() {
-        let levels = &image.pyramid.levels[image.skipped..];
-        let [width, height] = levels[0].size;
-        let mut header = vec![width, height, levels.len() as u32, image.pyramid.form as u32];
-        for level in levels {
-            header.push(words.len() as u32);
-            words.extend(&level.texels);
-        }
-        words[at * HEADER..][..header.len()].copy_from_slice(&header);
-    }
-    words
+/// The looks of a model on an object.
+fn placed_looks(model: &BrickLevels, set: u32, space: TextureUse) -> PlacedTextures {
+    let TextureUse { object_from_world, repeated, instancer } = space;
+    let (center, unit) = model.look_space();
+    let looks = DAffine3::from_scale(DVec3::splat(unit.recip())) * DAffine3::from_translation(-center);
+    PlacedTextures { texture_from_world: looks * object_from_world, bump: 0.0, set, repeated, instancer }
 }
 
 /// The textures of a material on an object.
-fn placed(
-    material: &Material,
-    set: u32,
-    object_from_world: &DAffine3,
-    repeated: Option<RepeatedSpace>,
-) -> Option<PlacedTextures> {
+fn placed(material: &Material, set: u32, space_of_use: TextureUse) -> Option<PlacedTextures> {
+    let TextureUse { object_from_world, repeated, instancer } = space_of_use;
+    let object_from_world = &object_from_world;
     let Textures::Triplanar { bump, space, size, stretch, offset, rotation, .. } = &material.textures else {
         return None;
     };
@@ -406,7 +449,9 @@ fn placed(
     let tiles = DAffine3::from_scale(tile.recip()) * DAffine3::from_quat(turn);
     let texture_from_world = tiles * DAffine3::from_translation(-DVec3::from(*offset)) * object;
     let repeated = repeated.filter(|_| *space != TextureSpace::World);
-    Some(PlacedTextures { texture_from_world, bump: bump / scale, set, repeated })
+    // Textures of the world stay where they are while copies pass.
+    let instancer = instancer.filter(|_| *space != TextureSpace::World);
+    Some(PlacedTextures { texture_from_world, bump: bump / scale, set, repeated, instancer })
 }
 
 /// The same space in meters of the world.

@@ -20,7 +20,7 @@ use super::copies::moved_scene::{scene_at, unseen_dynamics};
 use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
-use super::flat_texture::TexturedMaterials;
+use super::flat_texture::{TextureUse, TexturedMaterials};
 use super::lower_bound::fold_bounds;
 use super::non_field;
 use super::operand::Operand;
@@ -78,7 +78,7 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
     on_a_stack(scene, &survey, || {
         let textured = TexturedMaterials::new(scene.materials());
-        let mut materials = Materials { scene, textured, index };
+        let mut materials = Materials { scene, textured, index, instancer: None };
         let budget = Budget::new(limits, &Cancel::default());
         let whole = united(collect(scene, &survey, budget, &mut |_, _| {}).operands);
         if !whole.is_empty() {
@@ -182,7 +182,7 @@ fn flatten_surveyed(
         ..FlatScene::default()
     };
     let textured = TexturedMaterials::new(scene.materials());
-    let mut materials = Materials { scene, textured, index: HashMap::new() };
+    let mut materials = Materials { scene, textured, index: HashMap::new(), instancer: None };
     let mut instancers = Vec::new();
     let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
         if matches!(node.kind, NodeKind::Instancer(_)) {
@@ -213,12 +213,13 @@ fn flatten_surveyed(
     let of = Flattening { scene, survey, time, flatten };
     for placed in instancers {
         let materials = std::cell::RefCell::new(&mut materials);
-        let mut palette = |flat: &mut FlatScene, id| {
-            materials.borrow_mut().resolve(flat, MaterialUse { id, object_from_world: None, repeated: None })
-        };
+        let mut palette = |flat: &mut FlatScene, id| materials.borrow_mut().resolve(flat, MaterialUse::plain(id));
         let mut add = |flat: &mut FlatScene, operands: &[Operand<'_>]| {
             let before = flat.components.len();
-            add_component(flat, &mut materials.borrow_mut(), operands, limits.rows)?;
+            let mut materials = materials.borrow_mut();
+            // It is the last one.
+            materials.instancer = (flat.instancers.len() as u32).checked_sub(1);
+            add_component(flat, &mut materials, operands, limits.rows)?;
             Ok((flat.components.len() > before).then_some(before))
         };
         budget = add_instancer(&mut flat, of, placed, budget, &mut palette, &mut add)?;
@@ -237,7 +238,7 @@ fn warn_of_small_images(flat: &mut FlatScene, scene: &Scene) {
     let FlatScene { textures, warnings, material_ids, nodes, ids, .. } = flat;
     let set_ids = textures.set_ids.clone();
     for image in textures.fit(MAX_TEXTURE_BYTES) {
-        let id = set_ids[image.set as usize];
+        let Some(id) = set_ids[image.set as usize] else { continue };
         let user =
             nodes.iter().zip(&*ids).find(|(node, _)| node.is_leaf() && material_ids[node.material as usize] == id);
         let Some(node) = user.and_then(|(_, id)| scene.node(*id)) else { continue };
@@ -258,11 +259,13 @@ struct Materials<'a> {
     scene: &'a Scene,
     textured: TexturedMaterials<'a>,
     index: HashMap<MaterialId, u32>,
+    /// The instancer whose types use them now.
+    instancer: Option<u32>,
 }
 
 impl Materials<'_> {
-    fn resolve(&mut self, flat: &mut FlatScene, user: MaterialUse) -> u32 {
-        let MaterialUse { id, object_from_world, repeated } = user;
+    fn resolve(&mut self, flat: &mut FlatScene, user: MaterialUse<'_>) -> u32 {
+        let MaterialUse { id, object_from_world, repeated, looks } = user;
         let known = self.index.get(&id).copied();
         if let (Some(known), None) = (known, object_from_world) {
             return known;
@@ -274,9 +277,17 @@ impl Materials<'_> {
         let at = flat.materials.len();
         flat.materials.push(known.map_or_else(made, |known| flat.materials[known as usize]));
         flat.material_ids.push(id);
+        let object_from_world = object_from_world.unwrap_or(DAffine3::IDENTITY);
+        let space = TextureUse { object_from_world, repeated, instancer: self.instancer };
+        if let Some(model) = looks {
+            // Others that name the material show it as it is.
+            let first = flat.bricks.place(model);
+            flat.textures.place_looks(model, first, at, space);
+            return at as u32;
+        }
         self.index.entry(id).or_insert(at as u32);
         if let Some(material) = self.textured.get(id) {
-            flat.textures.place(material, at, &object_from_world.unwrap_or(DAffine3::IDENTITY), repeated);
+            flat.textures.place(material, at, space);
         }
         at as u32
     }
@@ -287,7 +298,7 @@ impl Materials<'_> {
             let reason = "has a material with textures, which meshes do not show".into();
             flat.warnings.push(Warning { node: node.id, name: node.name.clone(), reason });
         }
-        self.resolve(flat, MaterialUse { id, object_from_world: None, repeated: None })
+        self.resolve(flat, MaterialUse::plain(id))
     }
 }
 

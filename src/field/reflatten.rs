@@ -12,6 +12,7 @@ use super::copies::moved_scene::{node_dynamics, scene_at};
 use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
+use super::flat_texture::TextureUse;
 use super::flatten::flatten_with_cuts;
 use super::lower_bound::fold_bounds;
 use super::non_field;
@@ -205,14 +206,17 @@ impl Last {
         let mut scratch = FlatScene { materials, bricks, ..FlatScene::default() };
         let mut known = true;
         let mut moved = Vec::new();
-        let new = emit(&mut scratch, &operands, &mut |scratch, MaterialUse { id, object_from_world, repeated }| {
+        let new = emit(&mut scratch, &operands, &mut |scratch, user| {
+            let MaterialUse { id, object_from_world, repeated, looks } = user;
             let found = match object_from_world {
-                None => flat.material_ids.iter().position(|m| *m == id),
+                None => (0..flat.material_ids.len())
+                    .find(|at| flat.material_ids[*at] == id && !flat.textures.has_looks(*at)),
                 Some(object) => {
                     // The leaf that is about to be written keeps its own entry.
                     let leaf = flat.nodes.get(old.first as usize + scratch.nodes.len());
                     let at = leaf.map_or(usize::MAX, |leaf| leaf.material as usize);
-                    moved.push((id, at, object, repeated));
+                    let space = TextureUse { object_from_world: object, repeated, instancer: None };
+                    moved.push((id, at, space, looks.cloned()));
                     flat.material_ids.get(at).filter(|m| **m == id).map(|_| at)
                 }
             };
@@ -231,9 +235,9 @@ impl Last {
         for node in &mut scratch.nodes {
             node.params += old.params;
         }
-        for (id, at, object_from_world, repeated) in moved {
+        for (id, at, space, looks) in moved {
             if let Some(material) = scene.material(id) {
-                flat.textures.replace(material, at, &object_from_world, repeated);
+                flat.textures.replace(material, looks.as_ref(), at, space);
             }
         }
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;

@@ -6,9 +6,16 @@ use super::scene_builder::{
 };
 use isolith_scene::{BlendKernel, MaterialId, ModelFile, NodeId, Operator, Points, Scene, Shadowing, Shape};
 
-/// A model of the examples as a field.
+/// A model of the examples as a field, in the node's material.
 pub(super) fn mesh_field(path: &str, resolution: f64) -> Shape {
-    Shape::MeshField { file: ModelFile::new(path), clip: String::new(), clip_time: 0.0, resolution, voxel_size: 0.0 }
+    Shape::MeshField {
+        file: ModelFile::new(path),
+        clip: String::new(),
+        clip_time: 0.0,
+        resolution,
+        voxel_size: 0.0,
+        file_materials: false,
+    }
 }
 
 pub(super) fn scene() -> Scene {

@@ -21,6 +21,7 @@ mod materials;
 mod mesh_and_fields;
 mod modifiers;
 mod operators;
+mod painted;
 mod random_groups;
 mod scene_builder;
 mod sculptures;
@@ -94,6 +95,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("asteroids", instancing::asteroids()),
         ("character", character::scene()),
         ("stanford", statues::scene()),
+        ("painted", painted::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),

@@ -86,6 +86,9 @@ pub struct MeshLook {
     pub emission: DVec3,
 }
 
+/// Most looks at a texture along each side of a square over which it is averaged.
+const MOST_LOOKS: f64 = 8.0;
+
 /// A byte of a texture of numbers.
 fn plain(bytes: [u8; 4]) -> DVec4 {
     DVec4::from(bytes.map(|b| f64::from(b) / 255.0))
@@ -133,25 +136,42 @@ impl TriangleMesh {
     /// Color and opacity at a point of a triangle: vertex color times part color times texture. `decode` converts a
     /// texture's bytes to linear numbers.
     pub fn color(&self, triangle: u32, weights: [f64; 3], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
+        self.color_over(triangle, weights, 0.0, decode)
+    }
+
+    /// The same, as a mean over this width.
+    fn color_over(&self, triangle: u32, weights: [f64; 3], width: f64, decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
         let Surface { color, base_color, .. } = self.part(triangle).surface;
         let corners = self.vertices(triangle);
         let own: DVec4 = (0..3).map(|i| DVec4::from(self.colors[corners[i]].map(f64::from)) * weights[i]).sum();
         let own = own * DVec4::from(color.map(f64::from));
-        base_color.map_or(own, |base_color| own * self.texel(triangle, weights, &base_color, decode))
+        base_color.map_or(own, |base_color| own * self.texel(triangle, weights, width, &base_color, decode))
     }
 
     /// The look at a point of a triangle. `decode` converts bytes of colors to linear numbers.
     pub fn look(&self, triangle: u32, weights: [f64; 3], decode: impl Fn([u8; 4]) -> DVec4) -> MeshLook {
+        self.look_over(triangle, weights, 0.0, decode)
+    }
+
+    /// The same, as a mean over this width, in meters.
+    pub fn look_over(
+        &self,
+        triangle: u32,
+        weights: [f64; 3],
+        width: f64,
+        decode: impl Fn([u8; 4]) -> DVec4,
+    ) -> MeshLook {
         let surface = &self.part(triangle).surface;
         let sampled = |texture_use: &Option<TextureUse>| {
-            texture_use.as_ref().map_or(DVec4::ONE, |texture_use| self.texel(triangle, weights, texture_use, plain))
+            let texel = |texture_use| self.texel(triangle, weights, width, texture_use, plain);
+            texture_use.as_ref().map_or(DVec4::ONE, texel)
         };
         let metal_rough = sampled(&surface.metal_rough);
         let emissive =
-            surface.emissive.map_or(DVec4::ONE, |emissive| self.texel(triangle, weights, &emissive, &decode));
+            surface.emissive.map_or(DVec4::ONE, |emissive| self.texel(triangle, weights, width, &emissive, &decode));
         let strength = f64::from(surface.occlusion_strength);
         MeshLook {
-            color: self.color(triangle, weights, &decode),
+            color: self.color_over(triangle, weights, width, &decode),
             metalness: f64::from(surface.metalness) * metal_rough.z,
             roughness: f64::from(surface.roughness) * metal_rough.y,
             occlusion: 1.0 + strength * (sampled(&surface.occlusion).x - 1.0),
@@ -162,12 +182,24 @@ impl TriangleMesh {
     /// The normal at a point of a triangle after the normal texture, of unit length. `normal` is the one before, also
     /// of unit length, in the space to which `from_local` leads.
     pub fn mapped_normal(&self, triangle: u32, weights: [f64; 3], normal: DVec3, from_local: &DMat3) -> DVec3 {
+        self.mapped_normal_over(triangle, weights, 0.0, normal, from_local)
+    }
+
+    /// The same, as a mean over this width, in meters of the mesh.
+    pub fn mapped_normal_over(
+        &self,
+        triangle: u32,
+        weights: [f64; 3],
+        width: f64,
+        normal: DVec3,
+        from_local: &DMat3,
+    ) -> DVec3 {
         let surface = &self.part(triangle).surface;
         let Some(texture_use) = &surface.normal else { return normal };
         let frame = self.tangent_frame(triangle, weights, texture_use, normal, from_local);
         let Some([tangent, bitangent]) = frame else { return normal };
         let scale = f64::from(surface.normal_scale);
-        let read = self.texel(triangle, weights, texture_use, plain) * 2.0 - 1.0;
+        let read = self.texel(triangle, weights, width, texture_use, plain) * 2.0 - 1.0;
         let mapped = tangent * (read.x * scale) + bitangent * (read.y * scale) + normal * read.z;
         mapped.try_normalize().unwrap_or(normal)
     }
@@ -207,17 +239,56 @@ impl TriangleMesh {
         Some([tangent, if bitangent.dot(up) < 0.0 { -bitangent } else { bitangent }])
     }
 
+    /// A texture at a point of a triangle: the mean over a square of this width in meters, of as many looks as it has
+    /// pixels, but no more than [`MOST_LOOKS`] along each side.
     fn texel(
         &self,
         triangle: u32,
         weights: [f64; 3],
+        width: f64,
         texture_use: &TextureUse,
         decode: impl Fn([u8; 4]) -> DVec4,
     ) -> DVec4 {
         let corners = self.vertices(triangle);
         let uv: DVec2 = (0..3).map(|i| self.uv(corners[i], texture_use.slot) * weights[i]).sum();
         let at = texture_use.place(uv);
-        self.textures[texture_use.texture].sample(texture_use.sampler, at.x, at.y, decode)
+        let texture = &self.textures[texture_use.texture];
+        let sample = |at: DVec2| texture.sample(texture_use.sampler, at.x, at.y, &decode);
+        if width <= 0.0 {
+            return sample(at);
+        }
+        let [a, b, c] = corners.map(|corner| texture_use.place(self.uv(corner, texture_use.slot)));
+        let (size, area) = (f64::from(texture.width) * f64::from(texture.height), self.face_normal(triangle).length());
+        let side = width * ((b - a).perp_dot(c - a).abs() / area.max(f64::MIN_POSITIVE)).sqrt();
+        let looks = (side * size.sqrt()).ceil().clamp(1.0, MOST_LOOKS);
+        let offset = |i: f64| side * ((i + 0.5) / looks - 0.5);
+        let all = (0..(looks * looks) as usize).map(|i| {
+            let (x, y) = (i % looks as usize, i / looks as usize);
+            sample(at + DVec2::new(offset(x as f64), offset(y as f64)))
+        });
+        all.sum::<DVec4>() / (looks * looks)
+    }
+
+    /// Whether it says anything of its look.
+    pub fn has_looks(&self) -> bool {
+        let is_usual = |part: &MeshPart| part.surface == Surface::default();
+        !self.parts.iter().all(is_usual) || self.colors.iter().any(|color| *color != [1.0; 4])
+    }
+
+    /// What its surfaces have and bricks do not keep.
+    pub fn unkept_looks(&self) -> Vec<&'static str> {
+        type Has = fn(&Surface) -> bool;
+        let any = |has: Has| self.parts.iter().any(|part| has(&part.surface));
+        let all: [(&str, Has); 5] = [
+            ("clear coats", |s| s.coat_weight > 0.0),
+            ("textures of occlusion", |s| s.occlusion.is_some()),
+            ("masks and opacity", |s| s.is_blended || s.alpha_cutoff.is_some()),
+            ("surfaces without light", |s| s.is_unlit),
+            ("other reflection than of index 1.5", |s| {
+                (s.ior, s.specular_weight, s.specular_color) != (1.5, 1.0, [1.0; 3])
+            }),
+        ];
+        all.into_iter().filter(|(_, has)| any(*has)).map(|(name, _)| name).collect()
     }
 
     fn uv(&self, vertex: usize, slot: usize) -> DVec2 {

@@ -66,6 +66,11 @@ impl<T> Attachment<T> {
         self.0.as_deref().map(|held| &*held.name)
     }
 
+    /// The file itself; empty without one.
+    pub fn bytes(&self) -> &[u8] {
+        self.0.as_deref().map_or(&[], |held| &held.bytes)
+    }
+
     /// The size of the file in bytes; 0 without a file.
     pub fn size(&self) -> usize {
         self.0.as_deref().map_or(0, |held| held.bytes.len())

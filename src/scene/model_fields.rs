@@ -18,19 +18,24 @@ pub struct ModelRequest {
     pub resolution: f64,
     /// Size of a voxel in meters, instead; 0 for none.
     pub voxel_size: f64,
+    /// With the materials of the file.
+    pub file_materials: bool,
 }
 
 impl Shape {
     /// What it is made of, if it is a model.
     pub fn model_request(&self) -> Option<ModelRequest> {
         match self {
-            Self::MeshField { file, clip, clip_time, resolution, voxel_size } if !file.path.is_empty() => {
+            Self::MeshField { file, clip, clip_time, resolution, voxel_size, file_materials }
+                if !file.path.is_empty() =>
+            {
                 Some(ModelRequest {
                     path: file.path.clone(),
                     clip: clip.clone(),
                     clip_time: *clip_time,
                     resolution: *resolution,
                     voxel_size: *voxel_size,
+                    file_materials: *file_materials,
                 })
             }
             _ => None,

@@ -413,5 +413,7 @@ shapes! {
         /// Size of a voxel, in place of the resolution; 0 for none.
         #[serde(default)]
         voxel_size: f64 = 0.0, VOXEL_SIZE;
+        /// Shows the file's own materials and textures, where it has some, in place of the node's material.
+        file_materials: bool = true, NO_LIMITS.fixed();
     }
 }

@@ -198,7 +198,11 @@ impl BrickLibrary {
 
     fn take(&mut self, key: ModelKey, mesh: Weak<TriangleMesh>, reply: BrickReply) {
         let path = key.pose.path.clone();
-        let told = reply.remarks.iter().map(|remark| format!("{path} {remark}"));
+        let own = reply.result.as_ref().map_or(0.0, |bricks| bricks.voxel());
+        // Coarser voxels of the same model have nothing else to say.
+        let is_finer = |known: &KnownBricks| known.result.as_ref().is_ok_and(|bricks| bricks.voxel() < own);
+        let is_coarser = self.known.iter().any(|(other, known)| other.pose == key.pose && is_finer(known));
+        let told = reply.remarks.iter().filter(|_| !is_coarser).map(|remark| format!("{path} {remark}"));
         let mut told: Vec<String> = told.collect();
         if let Some(reason) = reply.unkept.filter(|_| !std::mem::replace(&mut self.is_cache_told, true)) {
             told.push(format!("Bricks of models are kept in memory only: {reason}"));
@@ -233,6 +237,10 @@ fn make(mesh: &TriangleMesh, key: &ModelKey, cache: &BrickCache, task: &Task) ->
     let voxel = if key.voxel > 0.0 { key.voxel } else { voxel_for(&mesh.bounds, resolution) };
     let content = bricks_key(mesh, voxel);
     let mut remarks = Vec::new();
+    let unkept = mesh.unkept_looks();
+    if !unkept.is_empty() {
+        remarks.push(format!("is shown as a field without what else its materials have: {}", unkept.join(", ")));
+    }
     match cache.load(content) {
         Ok(Some(bricks)) => return BrickReply { result: Ok(Arc::new(bricks)), remarks, unkept: None },
         Ok(None) => {}
@@ -243,6 +251,21 @@ fn make(mesh: &TriangleMesh, key: &ModelKey, cache: &BrickCache, task: &Task) ->
         !task.is_canceled()
     };
     match voxelized(mesh, voxel, &mut progress) {
+        // Of a model of which there is too much, coarser voxels are better than nothing.
+        Err(BrickError::TooLarge { .. }) => {
+            let coarser = ModelKey { pose: key.pose.clone(), resolution: 0.0, voxel: 2.0 * voxel };
+            let mut reply = make(mesh, &coarser, cache, task);
+            if let Ok(bricks) = &reply.result
+                && bricks.voxel() == 2.0 * voxel
+            {
+                let millimeters = [1e3 * voxel, 2e3 * voxel];
+                let [asked, given] = millimeters.map(|v| format!("{v:.2} mm"));
+                reply
+                    .remarks
+                    .push(format!("is made of voxels of {given}: in voxels of {asked} it takes too much memory"));
+            }
+            reply
+        }
         Ok(made) => {
             remarks.extend(made.remarks);
             let unkept = cache.store(content, &made.bricks).err();

@@ -135,9 +135,19 @@ impl SceneSession {
         self.models.problem()
     }
 
-    /// A node whose model cannot be a field, and why.
+    /// Sets how many MiB the bricks of all models together may take.
+    pub fn set_brick_budget(&mut self, mebibytes: u32) {
+        self.fields.set_budget((mebibytes as usize) << 16);
+    }
+
+    /// How many that are.
+    pub fn brick_budget(&self) -> usize {
+        self.fields.budget() >> 16
+    }
+
+    /// A node whose model cannot be a field as it should be, and why.
     pub fn field_problem(&self, document: &Document) -> Option<(NodeId, String)> {
-        self.fields.problems(document.resting()).next()
+        self.fields.problems(document.resting()).next().or_else(|| self.fields.reductions(document.resting()).next())
     }
 
     /// A scene with the bricks of its models, where they are made.

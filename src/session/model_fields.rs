@@ -6,18 +6,51 @@ use std::sync::Arc;
 
 use super::bricks::{BrickLibrary, ModelKey};
 use super::notice::Notice;
-use isolith_bricks::BrickLevels;
+use isolith_bricks::{BrickLevels, Bricks, MAX_BRICK_TEXELS};
 use isolith_jobs::{Jobs, Task};
 use isolith_mesh::{ClipTime, MeshLibrary, ModelPose};
 use isolith_scene::{ModelRequest, NodeId, NodeKind, Scene};
 
 /// The models of a scene as fields.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct ModelFields {
     library: BrickLibrary,
     /// The bricks of each request, by those of the finest voxels.
-    levels: HashMap<ModelKey, Arc<BrickLevels>>,
+    levels: HashMap<ModelKey, ModelLevels>,
     revision: u64,
+    /// Most texels of all bricks together.
+    budget: usize,
+    is_budget_new: bool,
+    /// By how much the voxels of models are larger than asked for, to stay within the budget.
+    enlarged: HashMap<ModelKey, u32>,
+}
+
+impl Default for ModelFields {
+    fn default() -> Self {
+        Self {
+            library: BrickLibrary::default(),
+            levels: HashMap::new(),
+            revision: 0,
+            budget: MAX_BRICK_TEXELS,
+            is_budget_new: false,
+            enlarged: HashMap::new(),
+        }
+    }
+}
+
+/// The bricks of a model with all that its file says, and without its looks.
+#[derive(Clone, Debug)]
+struct ModelLevels {
+    full: Arc<BrickLevels>,
+    plain: Arc<BrickLevels>,
+}
+
+impl ModelLevels {
+    fn new(levels: Vec<Arc<Bricks>>) -> Option<Self> {
+        let full = Arc::new(BrickLevels::new(levels)?);
+        let plain = if full.has_looks() { Arc::new(full.without_looks()) } else { full.clone() };
+        Some(Self { full, plain })
+    }
 }
 
 impl ModelFields {
@@ -29,6 +62,18 @@ impl ModelFields {
     /// Changes the folder; forgets everything if it differs from the old one.
     pub fn set_folder(&mut self, folder: Option<std::path::PathBuf>) {
         self.library.set_folder(folder);
+    }
+
+    /// Sets how many texels of 16 bytes all bricks together may take; at most [`MAX_BRICK_TEXELS`].
+    pub fn set_budget(&mut self, texels: usize) {
+        let budget = texels.min(MAX_BRICK_TEXELS);
+        self.is_budget_new |= self.budget != budget;
+        self.budget = budget;
+    }
+
+    /// Most texels of all bricks together.
+    pub fn budget(&self) -> usize {
+        self.budget
     }
 
     /// A number that changes with what scenes get.
@@ -55,7 +100,8 @@ impl ModelFields {
     /// get anything else than before.
     pub fn follow(&mut self, jobs: &Jobs, requests: &[ModelRequest], meshes: &MeshLibrary) -> bool {
         let keys = self.keys(requests);
-        self.library.follow(jobs, &keys, meshes) && self.assemble(requests)
+        let is_new = self.library.follow(jobs, &keys, meshes) || std::mem::take(&mut self.is_budget_new);
+        is_new && self.assemble(requests)
     }
 
     /// Makes all that is missing at once; false if the task was canceled.
@@ -79,7 +125,10 @@ impl ModelFields {
         if self.levels.is_empty() {
             return Cow::Borrowed(scene);
         }
-        Cow::Owned(scene.with_bricks(&|request| self.levels.get(&key_of(request)).cloned()))
+        Cow::Owned(scene.with_bricks(&|request| {
+            let ModelLevels { full, plain } = self.levels.get(&key_of(request))?;
+            Some(if request.file_materials { full.clone() } else { plain.clone() })
+        }))
     }
 
     /// The nodes whose bricks cannot be made, and why.
@@ -88,6 +137,24 @@ impl ModelFields {
             let NodeKind::Object(object) = &node.kind else { return None };
             let key = key_of(&object.shape.model_request()?);
             Some((node.id, self.library.get(&key)?.err()?))
+        })
+    }
+
+    /// The nodes whose voxels are larger than asked for, and why.
+    pub fn reductions<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (NodeId, String)> + 'a {
+        scene.nodes().iter().filter_map(|node| {
+            let NodeKind::Object(object) = &node.kind else { return None };
+            let key = key_of(&object.shape.model_request()?);
+            let (factor, levels) = (self.enlarged.get(&key)?, self.levels.get(&key)?);
+            let millimeters = 1e3 * levels.full.finest().voxel();
+            Some((
+                node.id,
+                format!(
+                    "is shown in voxels of {millimeters:.2} mm, {factor} times as large as asked for: the bricks of all \
+                     models may take {} MiB",
+                    self.budget >> 16
+                ),
+            ))
         })
     }
 
@@ -101,7 +168,7 @@ impl ModelFields {
     }
 
     /// The bricks of a request that are made so far, the finest first, and the keys of all but those.
-    fn chain(&self, finest: &ModelKey) -> (Vec<Arc<isolith_bricks::Bricks>>, Vec<ModelKey>) {
+    fn chain(&self, finest: &ModelKey) -> (Vec<Arc<Bricks>>, Vec<ModelKey>) {
         let (mut levels, mut keys) = (Vec::new(), Vec::new());
         let mut next = self.library.nearest(finest).and_then(Result::ok);
         while let Some(bricks) = next.take() {
@@ -116,28 +183,74 @@ impl ModelFields {
 
     /// Puts together what was made. Returns whether anything is new.
     fn assemble(&mut self, requests: &[ModelRequest]) -> bool {
-        let mut all = HashMap::new();
+        let mut chains: Vec<Chain> = Vec::new();
         for request in requests {
             let key = key_of(request);
-            let (levels, keys) = self.chain(&key);
-            // Shown once it is complete: far from the surface it would be a bound of little use.
-            let is_complete = levels.len() > keys.len() || keys.is_empty();
+            let at = chains.iter().position(|chain| chain.key == key).unwrap_or_else(|| {
+                let (levels, keys) = self.chain(&key);
+                // Shown once it is complete: far from the surface it would be a bound of little use.
+                let is_complete = levels.len() > keys.len() || keys.is_empty();
+                chains.push(Chain { key, levels, is_complete, skipped: 0, shown: [false; 2] });
+                chains.len() - 1
+            });
+            chains[at].shown[usize::from(request.file_materials)] = true;
+        }
+        fit(&mut chains, self.budget);
+        let mut all = HashMap::new();
+        self.enlarged.clear();
+        for Chain { key, levels, is_complete, skipped, .. } in chains {
+            let levels = &levels[skipped..];
             let old = self.levels.get(&key);
-            let same = |old: &&Arc<BrickLevels>| {
-                old.all().len() == levels.len() && old.all().iter().zip(&levels).all(|(a, b)| Arc::ptr_eq(a, b))
+            let same = |old: &&ModelLevels| {
+                let old = old.full.all();
+                old.len() == levels.len() && old.iter().zip(levels).all(|(a, b)| Arc::ptr_eq(a, b))
             };
             let new = match old.filter(same).or(old.filter(|_| !is_complete)) {
-                Some(old) => Some(Arc::clone(old)),
-                None if is_complete => BrickLevels::new(levels).map(Arc::new),
+                Some(old) => Some(old.clone()),
+                None if is_complete => ModelLevels::new(levels.to_vec()),
                 None => None,
             };
+            if skipped > 0 {
+                self.enlarged.insert(key.clone(), 1 << skipped);
+            }
             all.extend(new.map(|new| (key, new)));
         }
         let is_new = all.len() != self.levels.len()
-            || all.iter().any(|(key, new)| self.levels.get(key).is_none_or(|old| !Arc::ptr_eq(old, new)));
+            || all.iter().any(|(key, new)| self.levels.get(key).is_none_or(|old| !Arc::ptr_eq(&old.full, &new.full)));
         self.levels = all;
         self.revision += u64::from(is_new);
         is_new
+    }
+}
+
+/// The bricks of a request that are made so far.
+struct Chain {
+    key: ModelKey,
+    /// The finest first.
+    levels: Vec<Arc<Bricks>>,
+    is_complete: bool,
+    /// How many of the finest are left out.
+    skipped: usize,
+    /// Whether they are shown without looks, and with looks.
+    shown: [bool; 2],
+}
+
+impl Chain {
+    fn texels(&self) -> usize {
+        let looks = |bricks: &Bricks| bricks.looks.as_ref().map_or(0, |looks| looks.texels.len());
+        let [plain, full] = self.shown.map(usize::from);
+        let of = |bricks: &Arc<Bricks>| (plain + full) * bricks.texels.len() + full * looks(bricks);
+        self.levels[self.skipped..].iter().map(of).sum()
+    }
+}
+
+/// Leaves out the finest levels of the largest models until all take no more than `budget` texels, or nothing is left
+/// to be left out.
+fn fit(chains: &mut [Chain], budget: usize) {
+    while chains.iter().map(Chain::texels).sum::<usize>() > budget {
+        let can_shrink = |chain: &&mut Chain| chain.skipped + 1 < chain.levels.len();
+        let Some(largest) = chains.iter_mut().filter(can_shrink).max_by_key(|chain| chain.texels()) else { return };
+        largest.skipped += 1;
     }
 }
 
@@ -150,4 +263,34 @@ pub fn pose_of(request: &ModelRequest) -> ModelPose {
 
 fn key_of(request: &ModelRequest) -> ModelKey {
     ModelKey { pose: pose_of(request), resolution: request.resolution, voxel: request.voxel_size }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isolith_bricks::placeholder;
+
+    fn chain(resolution: f64, file_materials: bool) -> Chain {
+        let key = ModelKey { pose: "model.glb".into(), resolution, voxel: 0.0 };
+        let shown = [!file_materials, file_materials];
+        Chain { key, levels: placeholder().all().to_vec(), is_complete: true, skipped: 0, shown }
+    }
+
+    #[test]
+    fn the_largest_models_lose_their_finest_voxels_until_all_fit() {
+        let whole = chain(1.0, true).texels();
+        assert!(chain(1.0, true).levels.len() > 1);
+        let fitted = |budget: usize| {
+            let mut chains = [chain(1.0, true), chain(2.0, false)];
+            fit(&mut chains, budget);
+            (chains.iter().map(Chain::texels).sum::<usize>(), chains.map(|chain| chain.skipped))
+        };
+        assert_eq!(fitted(2 * whole), (2 * whole, [0, 0]));
+        let (texels, mut skipped) = fitted(2 * whole - 1);
+        skipped.sort_unstable();
+        assert!(texels < 2 * whole && skipped == [0, 1], "{texels}: {skipped:?}");
+        // The coarsest stays, whatever it takes.
+        let (texels, skipped) = fitted(0);
+        assert!(texels > 0 && skipped.iter().all(|n| *n + 1 == placeholder().all().len()), "{texels}: {skipped:?}");
+    }
 }

@@ -74,7 +74,10 @@ impl PreparedScene {
                 reason: format!("is shown as a placeholder: {reason}"),
             })
         });
-        let refused = refused.collect();
+        let reduced = fields
+            .reductions(scene)
+            .filter_map(|(node, reason)| Some(Warning { node, name: scene.node(node)?.name.clone(), reason }));
+        let refused = refused.chain(reduced).collect();
         Ok(is_whole.then_some(Self { flat, library, fields, refused, flattener }))
     }
 

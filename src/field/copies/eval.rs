@@ -133,6 +133,12 @@ pub fn world_surface(flat: &FlatScene, component: &Component, point: DVec3) -> S
     SurfacePoint { distance: value, gradient: local.matrix3.transpose() * found.gradient * factor, ..found }
 }
 
+/// The space of the copy that is nearest to a point of the world; `None` for components that are no type of an
+/// instancer.
+pub fn copy_from_world(flat: &FlatScene, component: &Component, point: DVec3) -> Option<DAffine3> {
+    copy_near(flat, component, point).map(|(.., copy_from_world)| copy_from_world)
+}
+
 /// The factor on the field of the nearest copy, the value, and copy from world.
 fn copy_near(flat: &FlatScene, component: &Component, point: DVec3) -> Option<(f64, f64, DAffine3)> {
     let of = component.instanced?;

@@ -21,7 +21,9 @@ mod variation;
 mod walk;
 
 pub use dynamics::{CopyMotion, Envelope, copy_basis, copy_envelope, copy_motion};
-pub use eval::{NearestCopy, nearest_copy, world_field, world_from_copy, world_gradient, world_surface};
+pub use eval::{
+    NearestCopy, copy_from_world, nearest_copy, world_field, world_from_copy, world_gradient, world_surface,
+};
 pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};
 pub use hash::{Channel, copy_hash, copy_random, copy_randoms};
 pub use instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, MAX_PLACES, Place, PlaceList, Placement};

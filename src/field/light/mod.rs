@@ -30,6 +30,7 @@ pub mod lighting;
 #[cfg(test)]
 mod lobes;
 pub mod material_ball;
+pub mod model_look;
 pub mod occlusion;
 pub mod shadow;
 pub mod texture;

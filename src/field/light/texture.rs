@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use super::model_look::model_look;
+use crate::FlatScene;
 use crate::eval::noise_value;
 use crate::flat_texture::{FlatImage, FlatTexture, FlatTextures, GpuPlacedTextures, TILES};
 use crate::mixture::{Mixture, SurfaceMaterial};
@@ -247,9 +249,6 @@ fn textured_material(
     point: &TexturedPoint,
 ) -> (SurfaceMaterial, DVec3) {
     let (mut material, mut bend) = (material, DVec3::ZERO);
-    if placed.textures == GpuPlacedTextures::NONE {
-        return (material, bend);
-    }
     let set = &textures.sets[placed.textures as usize];
     let wide = placed.rows.map(|row| row.map(f64::from));
     let rows = DMat3::from_cols_array_2d(&wide.map(|[x, y, z, _]| [x, y, z])).transpose();
@@ -263,6 +262,16 @@ fn textured_material(
         normal,
         weights: texture_weights(normal, set.sharpness.into()),
     };
+    if set.slots[0].kind == FlatTexture::LOOKS {
+        let width = (sample.across.length() * sample.along.length()).sqrt();
+        let looks = model_look(&textures.looks[set.slots[0].a as usize], texture_wrapped(sample.at), width);
+        let rest = 1.0 - looks.share;
+        material.base_color = material.base_color * rest + looks.color;
+        material.metalness = material.metalness * rest + looks.metalness;
+        material.roughness = material.roughness * rest + looks.roughness;
+        material.emission = material.emission * rest + looks.emission;
+        return (material, axes[0] * looks.bend.x + axes[1] * looks.bend.y + axes[2] * looks.bend.z);
+    }
     let stride = ((1.0 / 1024.0) / sample.across.length().max(sample.along.length())).max(1.0);
     let value = |slot: usize, offset: DVec3| {
         let there = Sample { at: texture_wrapped(sample.at + offset * stride), ..sample };
@@ -288,20 +297,47 @@ fn textured_material(
     (material, bend)
 }
 
-/// The material of a mixture with all its textures, and the normal that they bend. `materials` are those of the scene,
-/// `placed` their textures, see [`crate::gpu_textures`].
+/// The point in the space of the copy that shows it.
+fn textured_copied(point: &TexturedPoint, copy_from_eye: &DAffine3) -> TexturedPoint {
+    let along = |v: DVec3| copy_from_eye.transform_vector3(v);
+    TexturedPoint {
+        position: copy_from_eye.transform_point3(point.position),
+        normal: along(point.normal).normalize(),
+        across: along(point.across),
+        along: along(point.along),
+    }
+}
+
+/// A bend in the space of a copy, in the world. `normal` is the normal in that space.
+fn textured_world_bend(bend: DVec3, normal: DVec3, copy_from_eye: &DAffine3) -> DVec3 {
+    let world = copy_from_eye.matrix3.transpose();
+    world * bend / (world * normal).length()
+}
+
+/// The material of a mixture with all its textures, and the normal that they bend. `placed` are the textures of the
+/// scene's materials, see [`crate::gpu_textures`]. `copy_from_eye` leads to the space of the copy that shows it.
 pub fn textured_mixture(
     mixture: &Mixture,
-    materials: &[crate::FlatMaterial],
-    textures: &FlatTextures,
+    flat: &FlatScene,
     placed: &[GpuPlacedTextures],
     point: &TexturedPoint,
+    copy_from_eye: Option<DAffine3>,
 ) -> (SurfaceMaterial, DVec3) {
+    let FlatScene { materials, textures, .. } = flat;
     let sum: f64 = mixture.weights.iter().sum();
     let (mut mixed, mut bend) = (SurfaceMaterial::default(), DVec3::ZERO);
     for (id, weight) in mixture.ids.into_iter().zip(mixture.weights).filter(|(_, weight)| *weight > 0.0) {
         let plain = SurfaceMaterial::from(&materials[id as usize]);
-        let (material, bends) = textured_material(plain, textures, &placed[id as usize], point);
+        let placed = &placed[id as usize];
+        let (material, bends) = match copy_from_eye.filter(|_| placed.copied_by > 0) {
+            _ if placed.textures == GpuPlacedTextures::NONE => (plain, DVec3::ZERO),
+            Some(space) => {
+                let there = textured_copied(point, &space);
+                let (material, bends) = textured_material(plain, textures, placed, &there);
+                (material, textured_world_bend(bends, there.normal, &space))
+            }
+            None => textured_material(plain, textures, placed, point),
+        };
         mixed.add(&material, weight / sum);
         bend += bends * (weight / sum);
     }

@@ -38,6 +38,8 @@ pub struct PreparedShape {
     pub bounds: Aabb,
     /// The bricks of a model.
     pub bricks: Option<Arc<BrickLevels>>,
+    /// Whether it shows the looks of its bricks.
+    pub has_looks: bool,
 }
 
 /// The texel at an index over all levels.
@@ -94,6 +96,8 @@ impl PreparedShape {
             Shape::MeshField { file, .. } => Some(file.bricks()),
             _ => None,
         };
-        Self { kind, parameters, payload, bounds, bricks }
+        let shows = matches!(shape, Shape::MeshField { file_materials: true, .. });
+        let has_looks = shows && bricks.as_ref().is_some_and(|bricks| bricks.has_looks());
+        Self { kind, parameters, payload, bounds, bricks, has_looks }
     }
 }

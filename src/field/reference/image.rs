@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
-use crate::copies::{look_at, look_mixture, look_varied, world_surface};
+use crate::copies::{copy_from_world, look_at, look_mixture, look_varied, world_surface};
 use crate::coverage::PixelSample;
 use crate::eval::SurfaceMaterial;
 use crate::light::arriving::{Arriving, SeenPoint};
@@ -201,8 +201,9 @@ impl View<'_> {
             }
             if !self.textures.is_empty() {
                 let at = textured_point(ray.direction, hit.t, normal, footprint);
-                let FlatScene { materials, textures, .. } = self.flat;
-                let (textured, bent) = textured_mixture(&mixture, materials, textures, &self.textures, &at);
+                let copy = copy_from_world(self.flat, component, ray.at(hit.t));
+                let copy_from_eye = copy.map(|copy| copy * DAffine3::from_translation(self.camera.position));
+                let (textured, bent) = textured_mixture(&mixture, self.flat, &self.textures, &at, copy_from_eye);
                 (material, shading_normal) = (textured, Some(bent));
             }
             material = look.map_or(material, |look| look_varied(material, &look));

@@ -3,11 +3,13 @@
 //!
 //! Each is a grid around an axis: its rows are drawn from the bottom to the top by rays from the inside.
 
+mod amphora;
 mod bust;
 mod column;
 mod strip;
 mod vase;
 
+use amphora::amphora;
 use bust::bust;
 use column::column;
 use vase::vase;
@@ -16,10 +18,11 @@ use vase::vase;
 type SculptureFile = (&'static str, fn() -> Vec<u8>);
 
 /// The sculptures.
-pub const SCULPTURES: [SculptureFile; 3] = [
+pub const SCULPTURES: [SculptureFile; 4] = [
     ("models/bust.glb", || bust().file()),
     ("models/vase.glb", || vase().file()),
     ("models/column.glb", || column().file()),
+    ("models/amphora.glb", amphora),
 ];
 
 #[cfg(test)]

@@ -112,7 +112,7 @@ impl Sculpture {
 }
 
 /// The two chunks of a .glb file.
-fn container(json: &[u8], binary: &[u8]) -> Vec<u8> {
+pub(super) fn container(json: &[u8], binary: &[u8]) -> Vec<u8> {
     let mut json = json.to_vec();
     json.resize(json.len().next_multiple_of(4), b' ');
     let mut out = Vec::with_capacity(28 + json.len() + binary.len());

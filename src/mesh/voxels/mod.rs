@@ -97,7 +97,9 @@ fn made(mesh: &TriangleMesh, voxel: f64, watch: &Watch) -> Result<Voxelized, Bri
     watch.advance(0.05);
     let distances = Distances { solid: &solid, columns };
     let (mut bricks, order) = encoded(grid, bounds, &Contents::new(grid, &distances, watch)?, watch)?;
-    bricks.looks = Some(painted(mesh, &bricks, &order, &distances, watch)?);
+    if mesh.has_looks() {
+        bricks.looks = Some(painted(mesh, &bricks, &order, &distances, watch)?);
+    }
     let mut remarks = Vec::new();
     if solid.has_sheets {
         remarks.push(format!(

@@ -15,6 +15,9 @@ use isolith_bricks::{
 /// Corners of voxels that the surface passes are nearer than this, in voxels.
 const NEAR: f32 = 2.5;
 
+/// The second word of a look with a smooth normal.
+const NO_BEND: u32 = 64 | 64 << 7 | 64 << 14;
+
 type Painted = ([bool; BRICK_VOLUME], Vec<VoxelLook>);
 
 /// The looks of these bricks, which are all with samples, in their order.
@@ -26,7 +29,7 @@ pub(super) fn painted(
     watch: &Watch,
 ) -> Result<Looks, BrickError> {
     let linear: Vec<f64> = (0..=255).map(|byte| linear_from_srgb(f64::from(byte) / 255.0)).collect();
-    let painter = Painter { mesh, distances, linear };
+    let painter = Painter { mesh, distances, linear, voxel: bricks.voxel() };
     let share = 0.3 / order.len().max(1) as f64;
     let of = |brick: &[u32; 3]| {
         watch.check()?;
@@ -45,6 +48,8 @@ struct Painter<'a> {
     distances: &'a Distances<'a>,
     /// The linear values of bytes.
     linear: Vec<f64>,
+    /// Looks are means over this width, in meters.
+    voxel: f64,
 }
 
 /// A point of a triangle.
@@ -80,7 +85,9 @@ impl Painter<'_> {
         let is_thin = thin.is_some() && (closed.is_none() || value(&thin) - SHEET_HALF < side * value(&closed));
         let side = if is_thin { 1.0 } else { side };
         // Nothing but lids.
-        let Some(foot) = (if is_thin { thin } else { closed }) else { return VoxelLook::unpacked([0xff_ffff, 0]) };
+        let Some(foot) = (if is_thin { thin } else { closed }) else {
+            return VoxelLook::unpacked([0xff_ffff, NO_BEND]);
+        };
         self.at(&foot, foot.to_sample.as_dvec3() * f64::from(side))
     }
 
@@ -90,17 +97,18 @@ impl Painter<'_> {
             let [r, g, b] = [r, g, b].map(|byte| self.linear[usize::from(byte)]);
             DVec4::new(r, g, b, f64::from(a) / 255.0)
         };
-        let look = self.mesh.look(foot.triangle, foot.weights, decode);
+        let look = self.mesh.look_over(foot.triangle, foot.weights, self.voxel, decode);
         let smooth = self.mesh.normal_at(foot.triangle, foot.weights);
         let is_turned = outward.length_squared() > 1e-6 && smooth.dot(outward) < -0.3 * outward.length();
         let normal = if is_turned { -smooth } else { smooth };
-        let normal = self.mesh.mapped_normal(foot.triangle, foot.weights, normal, &DMat3::IDENTITY);
+        let (triangle, weights, width) = (foot.triangle, foot.weights, self.voxel);
+        let bend = self.mesh.mapped_normal_over(triangle, weights, width, normal, &DMat3::IDENTITY) - normal;
         let light = look.emission.max_element();
         let brightest = look.color.truncate().max_element();
         // The color of an emitter is that of its light: looks have one color.
         let color = if light > brightest { look.emission / light } else { look.color.truncate() };
         let emission = if light > 0.0 { light / color.max_element() } else { 0.0 };
-        VoxelLook { color, metalness: look.metalness, roughness: look.roughness, emission, normal }
+        VoxelLook { color, metalness: look.metalness, roughness: look.roughness, emission, bend }
     }
 }
 

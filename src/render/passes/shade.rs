@@ -97,6 +97,11 @@ impl FramePass for ShadePass {
                 .as_ref()
                 .filter(|_| frame.shade_features.copies)
                 .map(wgpu::Buffer::as_entire_binding),
+            bricks: frame.shade_features.looks.then(|| wgpu::BindingResource::TextureView(&recorder.shaded().bricks)),
+            carried: frame
+                .shade_features
+                .carried
+                .then(|| recorder.shaded().copies.each_ref().map(wgpu::Buffer::as_entire_binding)),
         };
         let (output, target) = match sampled {
             Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),

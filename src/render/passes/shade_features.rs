@@ -7,11 +7,13 @@ use wgpu::{
 
 use crate::recipe::Pass;
 use crate::resources::accumulation::SUM_FORMAT;
-use crate::resources::layouts::{TEXELS_FORMAT, entry, layout, read_only_texture, read_storage, read_texture, uniform};
+use crate::resources::layouts::{
+    BRICKS_FORMAT, TEXELS_FORMAT, entry, layout, read_only_texture, read_storage, read_texture, uniform,
+};
 use crate::resources::texture_resources::TextureBindings;
 use isolith_field::{FlatMaterial, FlatScene, GpuLight};
 use isolith_scene::ViewTransform;
-use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble_with};
+use isolith_wgsl::{Evaluator, OpSet, Options, SCENE_COPIES, ShaderError, assemble_with};
 
 /// What a scene needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -20,6 +22,10 @@ pub struct ShadeFeatures {
     pub layers: bool,
     /// A material has textures.
     pub textures: bool,
+    /// A model shows the materials of its file.
+    pub looks: bool,
+    /// Copies of instancers carry textures.
+    pub carried: bool,
     /// A light has a size.
     pub area_lights: bool,
     /// The environment is not a gradient.
@@ -37,6 +43,8 @@ impl ShadeFeatures {
         Self {
             layers,
             textures: !flat.textures.sets.is_empty(),
+            looks: !flat.textures.looks.is_empty(),
+            carried: flat.textures.are_carried(),
             area_lights: lights.iter().any(GpuLight::has_size),
             image_lit: flat.environment_map.is_some(),
             shadowed,
@@ -49,9 +57,9 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let Self { layers, textures, area_lights, image_lit, shadowed, copies } = self;
+        let Self { layers, textures, looks, carried, area_lights, image_lit, shadowed, copies } = self;
         let options = Options { layers, area_lights, image_lit, shadowed, ..Options::default() };
-        let used = [(textures, "TEXTURES"), (copies, "COPIES")];
+        let used = [(textures, "TEXTURES"), (looks, "LOOKS"), (carried, SCENE_COPIES), (copies, "COPIES")];
         let features: Vec<&str> = used.into_iter().filter_map(|(is_used, name)| is_used.then_some(name)).collect();
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, &features)
     }
@@ -89,8 +97,10 @@ impl ShadeOutput {
 /// Places in group 3, whose resources depend on the features: `shaders/shade.wgsl` declares them.
 const SUM: u32 = 0;
 const TEXTURES: [u32; 3] = [1, 2, 3];
-const SHARES: [u32; 2] = [4, 5];
+const CARRIED: [u32; 2] = [4, 5];
 const COPIED: u32 = 6;
+const BRICKS: u32 = 7;
+const SHARES: [u32; 2] = [8, 9];
 
 /// The resources of group 3.
 #[derive(Clone, Debug, Default)]
@@ -103,6 +113,10 @@ pub struct ShadeExtras<'a> {
     pub shares: Option<[BindingResource<'a>; 2]>,
     /// Which copies the pixels show, if there are some.
     pub copied: Option<BindingResource<'a>>,
+    /// The bricks of models, if they have looks.
+    pub bricks: Option<BindingResource<'a>>,
+    /// The instancers and their places, if copies carry textures.
+    pub carried: Option<[BindingResource<'a>; 2]>,
 }
 
 impl ShadeFeatures {
@@ -113,7 +127,9 @@ impl ShadeFeatures {
         let textures = TEXTURES.into_iter().zip(of_textures).filter(|_| self.textures);
         let shares = SHARES.into_iter().zip([uniform(false), read_storage()]).filter(|_| self.shadowed);
         let copied = self.copies.then(|| (COPIED, read_storage()));
-        let all = sum.into_iter().chain(textures).chain(shares).chain(copied);
+        let bricks = self.looks.then(|| (BRICKS, read_only_texture(BRICKS_FORMAT)));
+        let carried = CARRIED.map(|at| (at, read_storage())).into_iter().filter(|_| self.carried);
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(bricks).chain(carried);
         let entries: Vec<_> = all.map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
         layout(device, "shade extras", &entries)
     }
@@ -127,7 +143,9 @@ impl ShadeExtras<'_> {
         let textures = textures.into_iter().flat_map(|resources| TEXTURES.into_iter().zip(resources));
         let shares = self.shares.into_iter().flat_map(|resources| SHARES.into_iter().zip(resources));
         let copied = self.copied.map(|copied| (COPIED, copied));
-        let all = sum.into_iter().chain(textures).chain(shares).chain(copied);
+        let bricks = self.bricks.map(|bricks| (BRICKS, bricks));
+        let carried = self.carried.into_iter().flat_map(|resources| CARRIED.into_iter().zip(resources));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(bricks).chain(carried);
         let entries: Vec<_> = all.map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
         device.create_bind_group(&BindGroupDescriptor { label: Some("shade extras"), layout, entries: &entries })
     }

@@ -2,6 +2,7 @@
 
 use super::frame::Frame;
 use super::resources::{FrameResources, Groups, SlotState};
+use super::scene::ShadedScene;
 use super::timings::Stamps;
 use crate::gpu::Gpu;
 use crate::pipelines::field::{FieldPipelines, own_of_copies};
@@ -72,6 +73,11 @@ impl<'a> Recorder<'a> {
     /// The bind group of the view.
     pub fn view(&self) -> &'a wgpu::BindGroup {
         &self.groups.view
+    }
+
+    /// What pass `shade` reads of the scene besides materials.
+    pub fn shaded(&self) -> &'a ShadedScene {
+        &self.groups.shaded
     }
 
     /// The bind group of the scene.

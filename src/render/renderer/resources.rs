@@ -9,6 +9,7 @@ use super::frame::Frame;
 use super::mesh_materials::MeshMaterials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
+use super::scene::ShadedScene;
 use super::slot::Slot;
 use crate::frame::plan::{Dispatch, FramePlan, Room, TILE};
 use crate::gpu::Gpu;
@@ -71,6 +72,8 @@ pub struct Groups {
     pub scene: BindGroup,
     /// Like `scene`, with the rows of templates.
     pub templates: BindGroup,
+    /// What pass `shade` reads of the scene.
+    pub shaded: ShadedScene,
     /// The same two for types of instancers, if there are any.
     pub copies: Option<[BindGroup; 2]>,
     pub dispatch_params: BindGroup,
@@ -285,6 +288,7 @@ impl FrameResources {
             scene: of_scene,
             templates,
             copies: state.targets.copied.is_some().then(|| scene.bind_copies(device)),
+            shaded: scene.shaded(),
             dispatch_params: bind(device, "dispatch_params", &self.layouts.dispatch_params, &[dispatch_params]),
             own: own(&bound),
         };
@@ -392,7 +396,7 @@ mod tests {
             ("common/scene.wgsl", "GROUP", FlatNode::GROUP),
             ("common/scene.wgsl", "RUN", FlatNode::RUN),
             ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
-            ("common/scene.wgsl", "LINE", DataTexture::LINE as u32),
+            ("common/lines.wgsl", "LINE", DataTexture::LINE as u32),
             ("light/shadow_settings.wgsl", "SHADOW_WORDS", SHADOW_WORDS as u32),
             ("light/shadow_settings.wgsl", "SHADOW_COPIES_WORDS", SHADOW_COPIES_WORDS as u32),
             ("scene/hierarchy.wgsl", "COPIES_LINK", COPIES_LINK),

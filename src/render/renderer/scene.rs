@@ -40,8 +40,19 @@ pub struct SceneResources {
     copies_layout: BindGroupLayout,
     instancers: SyncedBuffer,
     places: SyncedBuffer,
+    /// The instancers whose copies carry textures, for pass `shade`.
+    textured_instancers: SyncedBuffer,
     /// The instancers as the device has them.
     placed: Vec<GpuInstancer>,
+}
+
+/// What pass `shade` reads of the scene besides materials.
+#[derive(Debug)]
+pub struct ShadedScene {
+    /// The bricks of models, which hold their looks.
+    pub bricks: wgpu::TextureView,
+    /// The instancers whose copies carry textures, and the places of all.
+    pub copies: [wgpu::Buffer; 2],
 }
 
 impl SceneResources {
@@ -52,6 +63,7 @@ impl SceneResources {
             copies_layout: layouts.copies.clone(),
             instancers: SyncedBuffer::uniform(device, "instancers"),
             places: SyncedBuffer::storage(device, "places"),
+            textured_instancers: SyncedBuffer::storage(device, "instancers with textures"),
             placed: Vec::new(),
             nodes: SyncedBuffer::storage(device, "nodes"),
             rows: SyncedBuffer::uniform(device, "rows"),
@@ -129,7 +141,9 @@ impl SceneResources {
         let Gpu { device, queue, .. } = gpu;
         let uploads =
             [self.instancers.set(device, queue, &bytes), self.places.set(device, queue, bytemuck::cast_slice(&rows))];
-        uploads.contains(&true)
+        let carries = flat.textures.are_carried()
+            && self.textured_instancers.set(device, queue, bytemuck::cast_slice(&self.placed));
+        carries || uploads.contains(&true)
     }
 
     /// The bind groups for types of instancers, like those of [`Self::bind`].
@@ -172,6 +186,14 @@ impl SceneResources {
     /// The places of all instancers.
     pub fn places(&self) -> wgpu::BindingResource<'_> {
         self.places.binding()
+    }
+
+    /// What pass `shade` reads of the scene besides materials.
+    pub fn shaded(&self) -> ShadedScene {
+        ShadedScene {
+            bricks: self.bricks.view().clone(),
+            copies: [&self.textured_instancers, &self.places].map(|buffer| buffer.buffer().clone()),
+        }
     }
 
     /// All materials.

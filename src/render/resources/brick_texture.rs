@@ -26,15 +26,20 @@ impl BrickTexture {
         let kept = if grown { 0 } else { bricks.all().iter().zip(self.held.all()).take_while(same).count() };
         let mut at = 0;
         for (index, held) in bricks.all().iter().enumerate() {
-            for level in held.all() {
+            for run in held.runs() {
                 if index >= kept {
-                    self.texture.write(queue, at * texel, bytemuck::cast_slice(&level.texels));
+                    self.texture.write(queue, at * texel, bytemuck::cast_slice(run));
                 }
-                at += level.texels.len();
+                at += run.len();
             }
         }
         self.held = bricks.clone();
         grown
+    }
+
+    /// The whole texture as a view.
+    pub fn view(&self) -> &wgpu::TextureView {
+        self.texture.view()
     }
 
     /// The whole texture as a binding.

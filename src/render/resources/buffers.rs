@@ -116,7 +116,7 @@ pub struct DataTexture {
 }
 
 impl DataTexture {
-    /// Texels in a line; `LINE` in `shaders/common/scene.wgsl`.
+    /// Texels in a line; `LINE` in `shaders/common/lines.wgsl`.
     pub const LINE: usize = 4096;
 
     /// An empty texture with texels of this format.
@@ -166,6 +166,11 @@ impl DataTexture {
         let size = wgpu::Extent3d { width: (width / self.texel()) as u32, height: rows, depth_or_array_layers: 1 };
         queue.write_texture(target, bytes, layout, size);
         self.uploaded += bytes.len() as u64;
+    }
+
+    /// The whole texture.
+    pub fn view(&self) -> &wgpu::TextureView {
+        &self.view
     }
 
     /// Bytes of a texel.
