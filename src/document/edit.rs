@@ -223,8 +223,8 @@ fn replace_label(old: &Node, new: &Node) -> String {
         format!("{} {name}", if new.visible { "Show" } else { "Hide" })
     } else if old.locked != new.locked {
         format!("{} {name}", if new.locked { "Lock" } else { "Unlock" })
-    } else if old.negative != new.negative {
-        format!("{} {name}", if new.negative { "Subtract" } else { "Join" })
+    } else if old.operation != new.operation {
+        format!("{} {name}", new.operation.label())
     } else if old.transform != new.transform {
         format!("Place {name}")
     } else {

@@ -30,7 +30,7 @@ pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {
 /// The color of a node's kind.
 pub fn node_color(node: &Node) -> Color32 {
     match node.kind {
-        _ if node.negative => *theme::NEGATIVE,
+        _ if !node.adds() => *theme::NEGATIVE,
         NodeKind::Object(_) => *theme::OBJECT,
         NodeKind::Group(_) | NodeKind::Instancer(_) => *theme::GROUP,
         NodeKind::Mesh(_) => *theme::MESH,

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::edit_session::EditSession;
 use super::messages::Message;
 use isolith_document::Edit;
-use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
+use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operation, Operator, Scene};
 
 /// The selected nodes without a selected ancestor, in scene order.
 pub fn roots(session: &EditSession) -> Vec<NodeId> {
@@ -151,14 +151,14 @@ pub fn place(scene: &Scene, id: NodeId) -> usize {
     scene.children(parent).position(|n| n.id == id).unwrap_or(0)
 }
 
-/// Toggles between subtracted and joined; all nodes get the new state of the active one.
-pub fn toggle_negative(session: &mut EditSession) {
+/// Toggles between this operation and [`Operation::Add`]; all nodes get the new state of the active one.
+pub fn toggle_operation(session: &mut EditSession, operation: Operation) {
     let ids: Vec<NodeId> = session.document.selection().into();
-    if refuse_locked(session, &ids, "cut away or joined again") {
+    if refuse_locked(session, &ids, "subtracted, intersected or added again") {
         return;
     }
-    let on = session.selected().last().is_some_and(|n| !n.negative);
-    change_each(session, |n| n.negative = on && n.has_field());
+    let on = session.selected().last().is_some_and(|n| n.operation != operation);
+    change_each(session, |n| n.operation = if on && n.has_field() { operation } else { Operation::Add });
 }
 
 /// Hides or shows the selection; all nodes get the new state of the active one.

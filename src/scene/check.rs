@@ -34,8 +34,8 @@ impl Fault {
 /// Checks the values of a node alone; the table checks ids and references.
 pub fn node(node: &Node) -> Result<(), Fault> {
     name(&node.name)?;
-    if node.negative && !node.has_field() {
-        return Err(Fault::new("negative", "only objects and groups can be negative"));
+    if !node.adds() && !node.has_field() {
+        return Err(Fault::new("operation", "only objects and groups can subtract or intersect"));
     }
     if node.apart.len() > MAX_APART {
         return Err(Fault::new("apart", format!("must name at most {MAX_APART} nodes, not {}", node.apart.len())));

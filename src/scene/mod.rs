@@ -82,7 +82,7 @@ pub use model_file::ModelFile;
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeKind, Object};
 pub use node_id::NodeId;
-pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
+pub use operator::{Blend, BlendKernel, BlendOverride, Operation, Operator, RadiusUnit};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,

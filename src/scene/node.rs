@@ -11,7 +11,8 @@ use super::limits::{
 use super::node_id::NodeId;
 use super::params::{param_struct, param_table};
 use super::{
-    Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape,
+    Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MaterialId, Modifier, ModifierSlot, Operation,
+    Operator, Shape,
 };
 use isolith_geometry::Transform;
 
@@ -29,8 +30,9 @@ pub struct Node {
     pub visible: bool,
     /// The viewport neither selects nor changes locked nodes.
     pub locked: bool,
-    /// Subtracted from what precedes it in its group instead of joined; objects and groups only.
-    pub negative: bool,
+    /// What it does to those before it in its group; only objects and groups do something else than
+    /// [`Operation::Add`].
+    pub operation: Operation,
     /// How it blends with its siblings; objects and groups only.
     pub blend_override: BlendOverride,
     /// Siblings with which it does not blend; it holds in both directions. Ids of other nodes have no effect. Objects
@@ -50,7 +52,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// A visible, unlocked, positive node at the origin. [`super::Scene::insert`] assigns its id.
+    /// A visible, unlocked, added node at the origin. [`super::Scene::insert`] assigns its id.
     pub fn new(name: impl Into<String>, kind: NodeKind) -> Self {
         Self {
             id: NodeId(0),
@@ -58,7 +60,7 @@ impl Node {
             name: name.into(),
             visible: true,
             locked: false,
-            negative: false,
+            operation: Operation::Add,
             blend_override: BlendOverride::Inherit,
             apart: Vec::new(),
             transform: Transform::IDENTITY,
@@ -87,9 +89,15 @@ impl Node {
         self
     }
 
-    /// The same node, subtracted instead of joined.
-    pub fn negative(mut self) -> Self {
-        self.negative = true;
+    /// The same node, subtracted instead of added.
+    pub fn subtracted(mut self) -> Self {
+        self.operation = Operation::Subtract;
+        self
+    }
+
+    /// The same node, intersected instead of added.
+    pub fn intersected(mut self) -> Self {
+        self.operation = Operation::Intersect;
         self
     }
 
@@ -109,6 +117,12 @@ impl Node {
     pub fn weighted(mut self, weight: f64) -> Self {
         self.weight = weight;
         self
+    }
+
+    /// Whether it is joined by the operator of its group; others act on what stands before them and need something
+    /// there.
+    pub fn adds(&self) -> bool {
+        self.operation == Operation::Add
     }
 
     /// Whether it can be an operand: only objects and groups have a field of their own.
@@ -312,8 +326,8 @@ param_table! { Node {
     visible: bool = true, NO_LIMITS.fixed();
     /// Protected from selection and change in the viewport.
     locked: bool = false, NO_LIMITS.fixed();
-    /// Cut away from what stands before it in its group, instead of joined; objects and groups only.
-    negative: bool = false, NO_LIMITS.fixed();
+    /// What the node does to those before it in its group; objects and groups only.
+    operation: Operation = Operation::Add, NO_LIMITS.fixed();
     /// How this node blends with its siblings; objects and groups only.
     blend_override as "joining": BlendOverride = BlendOverride::Inherit, NO_LIMITS.labeled("Blend");
     /// How often an instancer takes it as the type of a copy, in relation to its siblings; children of instancers only.

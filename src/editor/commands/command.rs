@@ -73,8 +73,10 @@ pub enum Command {
     RerollSeeds,
     /// Give the selected instancers, or a new one of the selection, ready-made settings.
     ApplyPreset(InstancerPreset),
-    /// Switch the selection between subtracted and joined.
-    ToggleNegative,
+    /// Switch the selection between subtracted and added.
+    ToggleSubtract,
+    /// Switch the selection between intersected and added.
+    ToggleIntersect,
     /// Select every node.
     SelectAll,
     /// Clear the selection.

@@ -142,7 +142,8 @@ fn instancers() -> Vec<CommandInfo> {
 }
 
 fn roles() -> Vec<CommandInfo> {
-    let negative = "Cut away from what stands before it, or joined again";
+    let subtract = "Cut away from what stands before it, or added again";
+    let intersect = "Keep of what stands before it only what is inside of it, or add it again";
     vec![
         join(Operator::Union, ICON_JOIN_FULL, "Union", "Joins the selection: what is in any of it")
             .key(NONE, Key::U)
@@ -151,7 +152,8 @@ fn roles() -> Vec<CommandInfo> {
             .key(NONE, Key::I),
         join(Operator::Difference, ICON_JOIN_LEFT, "Subtract", "Cuts all later ones out of the first of the selection")
             .key(NONE, Key::D),
-        on_selection(Command::ToggleNegative, ICON_REMOVE_CIRCLE, "Toggle subtract", negative).key(NONE, Key::N),
+        on_selection(Command::ToggleSubtract, ICON_REMOVE_CIRCLE, "Toggle subtract", subtract).key(NONE, Key::N),
+        on_selection(Command::ToggleIntersect, ICON_JOIN_INNER, "Toggle intersect", intersect),
     ]
 }
 

@@ -17,7 +17,7 @@ use crate::{
     relations, seeds, selection,
 };
 use isolith_document::Edit;
-use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
+use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operation, Operator};
 
 impl Editor {
     /// Runs a command if it is enabled.
@@ -94,7 +94,8 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::MoveUp => selection::shift(session, -1),
         Command::MoveDown => selection::shift(session, 1),
         Command::Join(operator) => selection::join(session, operator, false),
-        Command::ToggleNegative => selection::toggle_negative(session),
+        Command::ToggleSubtract => selection::toggle_operation(session, Operation::Subtract),
+        Command::ToggleIntersect => selection::toggle_operation(session, Operation::Intersect),
         Command::SelectAll | Command::SelectNothing | Command::SelectParents | Command::SelectChildren => {
             select(state, command);
         }

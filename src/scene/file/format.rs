@@ -5,7 +5,7 @@
 
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
 use super::animation::TrackFile;
@@ -13,7 +13,8 @@ use super::list::at_most;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
-    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Timeline, whole,
+    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Operation, Timeline,
+    whole,
 };
 use isolith_geometry::Transform;
 
@@ -73,9 +74,9 @@ pub(super) struct NodeFile<L = Light> {
     /// Protected from selection and change in the viewport.
     #[serde(default, skip_serializing_if = "is_false")]
     pub locked: bool,
-    /// Subtracted from what precedes it in its group.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub negative: bool,
+    /// What it does to those before it in its group. Earlier files say `negative` for what is subtracted.
+    #[serde(default, alias = "negative", deserialize_with = "operation", skip_serializing_if = "is_added")]
+    pub operation: Operation,
     /// How it blends with its siblings.
     #[serde(default, skip_serializing_if = "is_inherited")]
     pub joining: BlendOverride,
@@ -165,7 +166,7 @@ impl From<&Node> for NodeFile {
             name: node.name.clone(),
             visible: node.visible,
             locked: node.locked,
-            negative: node.negative,
+            operation: node.operation,
             joining: node.blend_override,
             apart: node.apart.clone(),
             transform: node.transform.into(),
@@ -210,7 +211,7 @@ impl NodeFile {
             name: self.name,
             visible: self.visible,
             locked: self.locked,
-            negative: self.negative,
+            operation: self.operation,
             blend_override: self.joining,
             apart: self.apart,
             transform: self.transform.into(),
@@ -259,6 +260,25 @@ fn one() -> f64 {
 
 fn is_one(value: &f64) -> bool {
     *value == one()
+}
+
+/// Reads an operation; in earlier files the node was subtracted, or not.
+fn operation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Operation, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "must be \"add\", \"subtract\" or \"intersect\"")]
+    enum NameOrFlag {
+        Name(Operation),
+        Flag(bool),
+    }
+    Ok(match NameOrFlag::deserialize(deserializer)? {
+        NameOrFlag::Name(operation) => operation,
+        NameOrFlag::Flag(false) => Operation::Add,
+        NameOrFlag::Flag(true) => Operation::Subtract,
+    })
+}
+
+fn is_added(operation: &Operation) -> bool {
+    *operation == Operation::Add
 }
 
 fn is_inherited(value: &BlendOverride) -> bool {

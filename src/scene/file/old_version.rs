@@ -247,7 +247,7 @@ impl NodeFile<LightV1> {
             name: self.name,
             visible: self.visible,
             locked: self.locked,
-            negative: self.negative,
+            operation: self.operation,
             joining: self.joining,
             apart: self.apart,
             transform: self.transform,
