@@ -72,6 +72,7 @@ pub fn group(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
             }
         }
         measures(ui, edit, operator);
+        row(ui, edit, "bake", |_| {});
     });
 }
 

@@ -112,6 +112,8 @@ pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, M
 pub const OPTIONAL_PATH_LENGTH: Limits = Limits::new([0.0, MAX_PATH as f64], [0.0, MAX_PATH as f64], "").whole();
 /// Voxels along the longest side of a model; 0 leaves the choice to the model.
 pub const VOXELS: Limits = Limits::new([0.0, 512.0], [0.0, isolith_bricks::RESOLUTIONS[1] as f64], "").whole();
+/// Voxels along the longest side of a baked group; 0 does not bake it.
+pub const BAKED_VOXELS: Limits = VOXELS;
 /// Size of a voxel of a model; 0 for none.
 pub const VOXEL_SIZE: Limits = Limits::new([0.0, 0.05], [0.0, 1e3], "m");
 /// Times within an animation clip.

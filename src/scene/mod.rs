@@ -22,6 +22,7 @@ mod animation;
 mod attached;
 mod attachment;
 mod axis;
+mod baked;
 pub mod check;
 mod decode_budget;
 mod display;

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::limits::{
-    APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS,
-    UNIT, WEIGHT,
+    APERTURE, BAKED_VOXELS, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION,
+    SCALE, THICKNESS, UNIT, WEIGHT,
 };
 use super::node_id::NodeId;
 use super::params::{param_struct, param_table};
@@ -208,6 +208,10 @@ param_struct! {
         /// How far a morph has come, from 0, the first child, to 1, the next.
         #[serde(default = "half", skip_serializing_if = "is_half")]
         share: f64 = half(), UNIT;
+        /// Voxels along the longest side of bricks that are drawn in place of the content, quicker where it is made of
+        /// much; 0 for none.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        bake: f64 = 0.0, BAKED_VOXELS.fixed().labeled("Bake resolution");
     }
 }
 
@@ -253,7 +257,7 @@ impl Group {
 
     /// A group with the default width, depth and share.
     pub const fn new(operator: Operator, blend: Blend) -> Self {
-        Self { operator, blend, width: usual_width(), depth: usual_depth(), share: half() }
+        Self { operator, blend, width: usual_width(), depth: usual_depth(), share: half(), bake: 0.0 }
     }
 }
 

@@ -9,6 +9,7 @@
 //! | `models` | the models that it names, read in the background and again when their files change |
 //! | `bricks` | models as distance bricks, made in the background |
 //! | `brick_cache` | their files |
+//! | `group_content` | what groups hold that are drawn from bricks |
 //! | `model_fields` | the shapes that are made of them |
 //! | `notice` | messages of a session |
 //! | `render_order`, `frames` | orders to render pictures into files, by a dialog or from the command line |
@@ -19,6 +20,7 @@ mod arrays;
 mod brick_cache;
 mod bricks;
 mod frames;
+mod group_content;
 mod model_fields;
 mod models;
 mod notice;
@@ -97,7 +99,7 @@ impl SceneSession {
     /// Follows the document, and takes over the results of jobs. Called once a frame. Returns whether anything is new.
     pub fn follow(&mut self, document: &Document) -> bool {
         let requests = document.resting().model_requests();
-        self.fields.follow(&self.jobs, &requests, self.models.library());
+        self.fields.follow(&self.jobs, document.resting(), self.models.library());
         let has_arrays = self.arrays.follow(&self.jobs, document, &self.fields);
         let poses: Vec<ModelPose> = requests.iter().map(pose_of).collect();
         let has_models = self.models.follow(&self.jobs, self.arrays.scene(), &poses, has_arrays);

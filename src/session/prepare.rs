@@ -36,7 +36,7 @@ impl PreparedScene {
     pub fn of(scene: &Scene, time: f64, folder: Option<PathBuf>, task: &Task) -> Result<Option<Self>, FlattenError> {
         let mut library = MeshLibrary::new(folder.clone());
         let mut fields = ModelFields::new(folder);
-        if !fields.make_all(&scene.model_requests(), &mut library, task) {
+        if !fields.make_all(scene, &mut library, task) {
             return Ok(None);
         }
         Self::with(scene, time, (library, fields), task)
@@ -67,13 +67,9 @@ impl PreparedScene {
         task.set_progress(FLATTENED);
         let poses: Vec<_> = flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
         let is_whole = read_models(&poses, &mut library, task, FLATTENED);
-        let refused = fields.problems(scene).filter_map(|(node, reason)| {
-            Some(Warning {
-                node,
-                name: scene.node(node)?.name.clone(),
-                reason: format!("is shown as a placeholder: {reason}"),
-            })
-        });
+        let refused = fields
+            .problems(scene)
+            .filter_map(|(node, reason)| Some(Warning { node, name: scene.node(node)?.name.clone(), reason }));
         let refused = refused.collect();
         Ok(is_whole.then_some(Self { flat, library, fields, refused, flattener }))
     }
