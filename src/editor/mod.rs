@@ -34,6 +34,7 @@
 //! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `camera_view` | looking through a camera, its frame; bookmarks of views |
 //! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
+//! | `packing` | the files of models within the scene, and beside it again |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -126,6 +127,7 @@ mod outliner;
 mod outliner_drop;
 mod outliner_filter;
 mod overlay;
+mod packing;
 mod palette;
 mod panel;
 mod panels;

@@ -180,6 +180,7 @@ impl Editor {
         if let Some(later) = self.state.files.poll(self.state.derived.jobs(), &mut self.state.session) {
             ctx.request_repaint_after(later);
         }
+        self.state.packing.poll(&mut self.state.session);
         self.show_in_front(&ctx);
         if let Some(command) = self.pending.take() {
             self.run(command, &ctx);
@@ -305,6 +306,7 @@ impl Editor {
             || self.doctor.is_busy()
             || self.wants_scan
             || self.state.files.is_busy()
+            || self.state.packing.is_busy()
             || self.conflict.is_looking()
             || self.is_recovering()
     }
@@ -370,6 +372,7 @@ impl Editor {
         (self.state.view.through, self.state.view.bookmarks) = (None, Default::default());
         self.opening = None;
         self.state.files.forget_attachments();
+        self.state.packing.forget();
         self.state.materials.forget();
         self.forget_kept();
         self.doctor.forget();

@@ -10,6 +10,7 @@ use super::intent::Intent;
 use super::keymap::{KeyBindings, Keymap};
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
+use super::packing::Packing;
 use super::playback::Playback;
 use super::units::LengthUnit;
 use super::view_state::{Picture, ViewSettings, ViewState};
@@ -66,6 +67,8 @@ pub struct EditorState {
     pub materials: MaterialLibrary,
     /// Jobs that read and write files for it.
     pub files: FileJobs,
+    /// Packs models into it.
+    pub packing: Packing,
     /// The picture of this frame.
     pub picture: Picture,
     /// The examples of the File menu.
@@ -99,6 +102,7 @@ impl Default for EditorState {
             derived: SceneSession::default(),
             materials: MaterialLibrary::default(),
             files: FileJobs::default(),
+            packing: Packing::default(),
             picture: Picture::default(),
             examples: Vec::new(),
             can_recover: false,

@@ -46,6 +46,7 @@ mod modifier;
 mod node;
 mod node_id;
 mod operator;
+mod packed;
 mod param_path;
 mod params;
 mod presets;
@@ -83,6 +84,7 @@ pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeKind, Object};
 pub use node_id::NodeId;
 pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
+pub use packed::{PACKED_ENDINGS, PackedFiles};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,

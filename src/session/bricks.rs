@@ -47,6 +47,8 @@ pub struct BrickLibrary {
     notices: Vec<Notice>,
     /// Whether a cache that cannot be written was reported.
     is_cache_told: bool,
+    /// The meshes whose remarks were reported, by path: the bricks of coarser voxels repeat them.
+    told: HashMap<String, Weak<TriangleMesh>>,
 }
 
 #[derive(Debug)]
@@ -198,8 +200,13 @@ impl BrickLibrary {
 
     fn take(&mut self, key: ModelKey, mesh: Weak<TriangleMesh>, reply: BrickReply) {
         let path = key.pose.path.clone();
-        let told = reply.remarks.iter().map(|remark| format!("{path} {remark}"));
-        let mut told: Vec<String> = told.collect();
+        let mut told: Vec<String> = Vec::new();
+        if !reply.remarks.is_empty() {
+            let before = self.told.insert(path.clone(), mesh.clone());
+            if before.is_none_or(|before| !before.ptr_eq(&mesh)) {
+                told.extend(reply.remarks.iter().map(|remark| format!("{path} {remark}")));
+            }
+        }
         if let Some(reason) = reply.unkept.filter(|_| !std::mem::replace(&mut self.is_cache_told, true)) {
             told.push(format!("Bricks of models are kept in memory only: {reason}"));
         }
