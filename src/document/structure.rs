@@ -66,10 +66,9 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId], is_linked: bool)
     if is_linked {
         links::link(&mut next, tops.iter().cloned().flatten())?;
     }
-    copy(&mut next, tops, is_linked).map(|added| {
-        *scene = next;
-        added
-    })
+    let added = copy(&mut next, tops, is_linked)?;
+    *scene = next;
+    Ok(added)
 }
 
 /// Adds a copy of each of these subtrees behind it.
