@@ -93,7 +93,9 @@ impl Inspector {
         if all.iter().all(|n| n.has_field())
             && let Some(mut edit) = MultiEdit::new(session, all.clone())
         {
-            inspector_blends::role(ui, &mut edit);
+            // In line with the rows of the cards below.
+            let inset = egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 0));
+            inset.show(ui, |ui| inspector_blends::role(ui, &mut edit));
         }
         self.transform(ui, session, &all);
         if let Some(mut edit) = MultiEdit::new(session, all.clone()) {

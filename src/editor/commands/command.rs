@@ -153,6 +153,8 @@ pub enum Command {
     LockCamera,
     /// Toggle the safe areas in the frame of a camera.
     ToggleSafeAreas,
+    /// Show this many viewports: 1, 2 or 4.
+    SplitView(usize),
     /// Keep the view in this bookmark.
     SetBookmark(usize),
     /// Show the view of this bookmark.

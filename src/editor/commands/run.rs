@@ -151,6 +151,7 @@ fn run_on_view(state: &mut EditorState, command: Command) {
         Command::CycleShading => state.view.cycle_shading(),
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
+        Command::SplitView(count) => state.requests.push(Request::SplitView(count)),
         // Those of a window in front or a file.
         _ => {}
     }
