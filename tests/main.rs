@@ -21,6 +21,7 @@ mod embed;
 mod files;
 mod golden;
 mod gpu;
+mod latency;
 mod lights;
 mod materials;
 mod meshes;

@@ -1,6 +1,7 @@
 //! Actions on the selection; each function is one undo step.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::edit_session::EditSession;
 use super::messages::Message;
@@ -54,6 +55,31 @@ pub fn duplicate(session: &mut EditSession) {
     if !added.is_empty() {
         session.document.select(added);
     }
+}
+
+/// Duplicates the selection and selects the copies, whose objects share shape and material with their originals.
+pub fn duplicate_linked(session: &mut EditSession) {
+    let added = session.apply(Edit::DuplicateLinked(roots(session)));
+    if !added.is_empty() {
+        session.document.select(added);
+    }
+}
+
+/// Takes the selected objects, and those in the selected groups, out of their sets of linked ones.
+pub fn unlink(session: &mut EditSession) {
+    let linked = linked_in_selection(session);
+    session.document.begin_step("Unlink");
+    for node in linked {
+        session.apply(Edit::Replace(Node { linked: None, ..Node::clone(&node) }));
+    }
+    session.document.end_gesture();
+}
+
+/// The linked objects that are selected or in selected groups.
+pub fn linked_in_selection(session: &EditSession) -> Vec<Arc<Node>> {
+    let scene = session.document.scene();
+    let places = roots(session).into_iter().filter_map(|id| scene.index_of(id)).flat_map(|at| scene.subtree(at));
+    places.map(|at| scene.nodes()[at].clone()).filter(|node| node.linked.is_some()).collect()
 }
 
 /// Deletes the selection except nodes that are locked or contain locked nodes; clears the selection.

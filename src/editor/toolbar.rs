@@ -36,7 +36,8 @@ impl Panel for Toolbar {
 }
 
 /// Submenus of View.
-const SUBMENUS: [(&str, Menu); 5] = [
+const SUBMENUS: [(&str, Menu); 6] = [
+    ("Split view", Menu::Split),
     ("Bookmarks", Menu::Bookmarks),
     ("Transform", Menu::Tool),
     ("Orientation", Menu::Orientation),

@@ -84,6 +84,12 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of a profile.
 pub const CORNERS: [usize; 2] = [3, 256];
 
+/// Most files that are packed into a scene.
+pub const MAX_PACKED_FILES: usize = 1_000;
+/// Most bytes of the files that are packed into a scene, together. Their text takes a third more, and recovery writes it
+/// every few seconds.
+pub const MAX_PACKED_BYTES: usize = 64 << 20;
+
 /// Largest file embedded in the scene, in bytes.
 pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
 /// Greatest width and height of an image, in pixels.

@@ -47,6 +47,7 @@ mod modifier;
 mod node;
 mod node_id;
 mod operator;
+mod packed;
 mod param_path;
 mod params;
 mod presets;
@@ -84,6 +85,7 @@ pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeKind, Object};
 pub use node_id::NodeId;
 pub use operator::{Blend, BlendKernel, BlendOverride, Operation, Operator, RadiusUnit};
+pub use packed::{PACKED_ENDINGS, PackedFiles};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,

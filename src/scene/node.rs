@@ -38,6 +38,9 @@ pub struct Node {
     /// Siblings with which it does not blend; it holds in both directions. Ids of other nodes have no effect. Objects
     /// and groups only.
     pub apart: Vec<NodeId>,
+    /// The set of linked objects to which it belongs: they share shape and material, and each keeps its own place, role,
+    /// modifiers and dynamics. Objects only.
+    pub linked: Option<u64>,
     /// Parent from local.
     pub transform: Transform,
     /// How often an instancer takes it as the type of a copy, in relation to its siblings; children of instancers only.
@@ -63,6 +66,7 @@ impl Node {
             operation: Operation::Add,
             blend_override: BlendOverride::Inherit,
             apart: Vec::new(),
+            linked: None,
             transform: Transform::IDENTITY,
             weight: 1.0,
             dynamics: Vec::new(),

@@ -73,6 +73,8 @@ pub struct BrickLibrary {
     notices: Vec<Notice>,
     /// Whether a cache that cannot be written was reported.
     is_cache_told: bool,
+    /// The meshes whose remarks were reported, by path: the bricks of coarser voxels repeat them.
+    told: HashMap<String, Weak<TriangleMesh>>,
 }
 
 #[derive(Debug)]
@@ -233,9 +235,14 @@ impl BrickLibrary {
     }
 
     fn take(&mut self, key: BrickKey, mesh: Weak<TriangleMesh>, reply: BrickReply) {
-        let name = key.subject.name();
-        let told = reply.remarks.iter().map(|remark| format!("{name} {remark}"));
-        let mut told: Vec<String> = told.collect();
+        let path = key.subject.name().to_owned();
+        let mut told: Vec<String> = Vec::new();
+        if !reply.remarks.is_empty() {
+            let before = self.told.insert(path.clone(), mesh.clone());
+            if before.is_none_or(|before| !before.ptr_eq(&mesh)) {
+                told.extend(reply.remarks.iter().map(|remark| format!("{path} {remark}")));
+            }
+        }
         if let Some(reason) = reply.unkept.filter(|_| !std::mem::replace(&mut self.is_cache_told, true)) {
             told.push(format!("Bricks of models are kept in memory only: {reason}"));
         }

@@ -34,7 +34,7 @@ impl PreparedScene {
     /// # Errors
     /// The scene is beyond a limit.
     pub fn of(scene: &Scene, time: f64, folder: Option<PathBuf>, task: &Task) -> Result<Option<Self>, FlattenError> {
-        let mut library = MeshLibrary::new(folder.clone());
+        let mut library = library_of(scene, folder.clone());
         let mut fields = ModelFields::new(folder);
         if !fields.make_all(scene, &mut library, task) {
             return Ok(None);
@@ -52,7 +52,7 @@ impl PreparedScene {
         folder: Option<PathBuf>,
         task: &Task,
     ) -> Result<Option<Self>, FlattenError> {
-        Self::with(scene, time, (MeshLibrary::new(folder), ModelFields::default()), task)
+        Self::with(scene, time, (library_of(scene, folder), ModelFields::default()), task)
     }
 
     fn with(
@@ -91,6 +91,11 @@ impl PreparedScene {
         self.library.keep_poses(poses.iter());
         Ok(read_models(&poses, &mut self.library, task, 0.0))
     }
+}
+
+/// The library of a scene in a folder, with the files that the scene packs.
+pub fn library_of(scene: &Scene, folder: Option<PathBuf>) -> MeshLibrary {
+    MeshLibrary::new(folder).with_packed(scene.packed.table().clone())
 }
 
 /// Reads the models that the library lacks; false if the task was canceled. `start` is the progress of the task so far.

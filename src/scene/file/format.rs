@@ -13,8 +13,8 @@ use super::list::at_most;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
-    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Operation, Timeline,
-    whole,
+    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Operation,
+    PackedFiles, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -53,6 +53,9 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// Parameters that change with time.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_TRACKS>")]
     pub tracks: Vec<TrackFile>,
+    /// Files that travel within the scene: its models, with the buffers and images that these name.
+    #[serde(default, skip_serializing_if = "PackedFiles::is_empty")]
+    pub packed: PackedFiles,
 }
 
 /// A node: exactly one of `group`, `object`, `instancer`, `mesh`, `light`, `camera` gives its kind.
@@ -83,6 +86,9 @@ pub(super) struct NodeFile<L = Light> {
     /// Ids of siblings with which it does not blend.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_APART>")]
     pub apart: Vec<NodeId>,
+    /// The set of linked objects to which it belongs: all of a set have the same shape and material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linked: Option<u64>,
     /// Its place in its group.
     #[serde(default, skip_serializing_if = "TransformFile::is_identity")]
     pub transform: TransformFile,
@@ -169,6 +175,7 @@ impl From<&Node> for NodeFile {
             operation: node.operation,
             joining: node.blend_override,
             apart: node.apart.clone(),
+            linked: node.linked,
             transform: node.transform.into(),
             weight: node.weight,
             dynamics: node.dynamics.clone(),
@@ -214,6 +221,7 @@ impl NodeFile {
             operation: self.operation,
             blend_override: self.joining,
             apart: self.apart,
+            linked: self.linked,
             transform: self.transform.into(),
             weight: self.weight,
             dynamics: self.dynamics,

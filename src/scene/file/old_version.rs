@@ -250,6 +250,7 @@ impl NodeFile<LightV1> {
             operation: self.operation,
             joining: self.joining,
             apart: self.apart,
+            linked: self.linked,
             transform: self.transform,
             weight: self.weight,
             dynamics: self.dynamics,
@@ -276,6 +277,7 @@ impl SceneV1 {
             nodes: self.nodes.into_iter().map(NodeFile::converted).collect(),
             timeline: self.timeline,
             tracks: self.tracks,
+            packed: self.packed,
         }
     }
 }
