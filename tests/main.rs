@@ -22,6 +22,7 @@ mod files;
 mod golden;
 mod gpu;
 mod lights;
+mod march_settings;
 mod materials;
 mod meshes;
 mod overlay;

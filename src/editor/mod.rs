@@ -129,6 +129,8 @@ mod overlay;
 mod palette;
 mod panel;
 mod panels;
+mod pass_step;
+mod pass_view;
 mod picking;
 mod placement;
 mod playback;

@@ -118,7 +118,16 @@ impl EditorState {
     /// The view for the renderer.
     pub fn wanted_view(&self) -> ViewSettings {
         let ViewState {
-            navigation, shading, view_mode, samples, show_grid, show_outline, size_px, is_navigating, ..
+            navigation,
+            shading,
+            view_mode,
+            passes,
+            samples,
+            show_grid,
+            show_outline,
+            size_px,
+            is_navigating,
+            ..
         } = &self.view;
         ViewSettings {
             camera: navigation.camera(),
@@ -129,6 +138,9 @@ impl EditorState {
             show_outline: *show_outline,
             shading: *shading,
             view_mode: *view_mode,
+            passes: *passes,
+            // A view in parallel has no eye near the scene.
+            has_cut_offs: !navigation.orthographic,
             samples: *samples,
         }
     }
