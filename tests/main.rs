@@ -23,6 +23,7 @@ mod golden;
 mod gpu;
 mod latency;
 mod lights;
+mod march_settings;
 mod materials;
 mod meshes;
 mod overlay;

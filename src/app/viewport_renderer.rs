@@ -12,7 +12,7 @@ use crate::editor::{Editor, GridView, Message, Picture, ViewSettings};
 use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::field::{FlatScene, Shading};
 use crate::mesh::TriangleMesh;
-use crate::render::{Frame, Gpu, GridPlane, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
+use crate::render::{Frame, Gpu, GridPlane, OverlaySettings, RenderError, Renderer, Slot, TracedParts, coarse_size};
 use crate::scene::NodeId;
 
 /// A picture that takes longer than this starts with a coarse one.
@@ -377,7 +377,16 @@ impl ViewportRenderer {
         size_px: [u32; 2],
     ) -> Result<Frame, RenderError> {
         let RenderRequest {
-            view: ViewSettings { camera, show_grid, grid: GridView { axis, cell, fades }, view_mode, .. },
+            view:
+                ViewSettings {
+                    camera,
+                    show_grid,
+                    grid: GridView { axis, cell, fades },
+                    view_mode,
+                    passes,
+                    has_cut_offs,
+                    ..
+                },
             flat,
             outline,
             ..
@@ -392,6 +401,7 @@ impl ViewportRenderer {
             shown_at,
         };
         let renderer = self.renderers.active();
+        renderer.set_traced(TracedParts { passes: *passes, has_cut_offs: *has_cut_offs });
         let mut frame = renderer.begin(slot, flat, meshes, camera, size_px, overlay)?;
         if *view_mode != ViewMode::Shaded {
             renderer.debug_view(

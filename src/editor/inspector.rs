@@ -102,6 +102,8 @@ impl Inspector {
             inspector_types::of_children(ui, &mut edit);
         }
         let moving = all.iter().all(|n| n.can_move()).then(|| all.clone());
+        let has_march = |n: &Arc<Node>| n.parent.is_none() || !n.march.is_usual();
+        let marched = moving.clone().filter(|all| all.iter().all(has_march));
         let with_fields = all.iter().all(|n| n.has_field()).then(|| all.clone());
         let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
         let Some(mut edit) = MultiEdit::new(session, alike) else { return };
@@ -124,6 +126,9 @@ impl Inspector {
         }
         if let Some(mut edit) = with_fields.and_then(|nodes| MultiEdit::new(session, nodes)) {
             inspector_lists::modifiers(ui, &mut edit);
+        }
+        if let Some(mut edit) = marched.and_then(|nodes| MultiEdit::new(session, nodes)) {
+            inspector_kinds::march(ui, &mut edit);
         }
     }
 }

@@ -133,6 +133,8 @@ mod packing;
 mod palette;
 mod panel;
 mod panels;
+mod pass_step;
+mod pass_view;
 mod picking;
 mod placement;
 mod playback;

@@ -139,7 +139,7 @@ impl EditorState {
         (navigation, size_px, shading, view_mode): (Navigation, [u32; 2], Shading, ViewMode),
         is_navigating: bool,
     ) -> ViewSettings {
-        let ViewState { samples, show_grid, show_outline, .. } = self.view;
+        let ViewState { passes, samples, show_grid, show_outline, .. } = self.view;
         ViewSettings {
             camera: navigation.camera(),
             size_px,
@@ -149,6 +149,9 @@ impl EditorState {
             show_outline,
             shading,
             view_mode,
+            passes,
+            // A view in parallel has no eye near the scene.
+            has_cut_offs: !navigation.orthographic,
             samples,
         }
     }

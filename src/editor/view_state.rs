@@ -50,6 +50,10 @@ pub struct ViewSettings {
     pub shading: Shading,
     /// The view mode.
     pub view_mode: ViewMode,
+    /// Number of passes over parts of the scene after which the picture is shown; `None` for all.
+    pub passes: Option<u32>,
+    /// Whether parts of the scene are cut off by their distance from the eye.
+    pub has_cut_offs: bool,
     /// Samples per pixel that accumulate while nothing changes.
     pub samples: u32,
 }
@@ -130,6 +134,8 @@ pub struct ViewState {
     pub shading: Shading,
     /// The view mode.
     pub view_mode: ViewMode,
+    /// Number of passes over parts of the scene after which the picture is shown; `None` for all.
+    pub passes: Option<u32>,
     /// Samples per pixel that accumulate while nothing changes.
     pub samples: u32,
     /// Whether to show the ground grid.
@@ -189,6 +195,7 @@ impl Default for ViewState {
             bookmarks: [None; BOOKMARKS],
             shading: Shading::default(),
             view_mode: ViewMode::Shaded,
+            passes: None,
             samples: SAMPLES,
             show_grid: true,
             show_outline: true,

@@ -22,7 +22,7 @@ use super::viewport_click::{click, prepare_menu, select_in_box, select_in_lasso,
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
 use super::viewport_surface::SurfaceUnderPointer;
-use super::{camera_view, grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
+use super::{camera_view, grid_labels, lattice_overlay, legend, materials, pass_view, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The panel of the viewport.
@@ -351,6 +351,7 @@ impl Viewport {
             let depth_range = state.depth_range();
             legend::paint(&painter, rect, state.view.view_mode, &depth_range);
         }
+        pass_view::paint(state, &painter, rect);
         if materials::is_over(response) {
             let outline = egui::Stroke::new(2.0, theme::ACCENT);
             painter.rect_stroke(rect, 0.0, outline, egui::StrokeKind::Inside);

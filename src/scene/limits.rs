@@ -218,6 +218,14 @@ pub const REACH: Limits = Limits::new([0.5, 4.0], [0.1, 10.0], "");
 pub const FOV: Limits = Limits::new([10.0, 120.0], [0.1, 170.0], "°");
 /// Diameter of the opening of a lens.
 pub const APERTURE: Limits = Limits::new([0.0, 0.1], [0.0, 100.0], "m");
+/// Place of a part of the scene in the order of marching.
+pub const MARCH_ORDER: Limits = Limits::new([0.0, 10.0], [0.0, 1_000.0], "").whole();
+/// Distance from the eye at which a part of the scene begins or ends; 0 for none.
+pub const CUT_OFF: Limits = Limits::new([0.0, 1e3], [0.0, 1e9], "m");
+/// How exactly rays find a surface, in relation to the usual.
+pub const PRECISION: Limits = Limits::new([0.1, 1.0], [0.01, 10.0], "");
+/// Most steps of a ray through a part of the scene; 0 for no limit.
+pub const MARCH_STEPS: Limits = Limits::new([0.0, 256.0], [0.0, 65_536.0], "").whole();
 /// Near and far limits of a camera.
 pub const CLIP: Limits = Limits::new([1e-3, 1e4], [1e-6, 1e9], "m");
 /// Distance from one copy to the next, and lengths of waves.

@@ -40,6 +40,7 @@ mod instancer;
 mod instancer_presets;
 mod light;
 pub mod limits;
+mod march;
 mod material;
 mod model_fields;
 mod model_file;
@@ -78,6 +79,7 @@ pub use instancer::{
 pub use instancer_presets::InstancerPreset;
 pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
+pub use march::MarchSettings;
 pub use material::{Material, MaterialId, ReflectionModel};
 pub use model_fields::ModelRequest;
 pub use model_file::ModelFile;

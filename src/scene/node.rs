@@ -11,8 +11,8 @@ use super::limits::{
 use super::node_id::NodeId;
 use super::params::{param_struct, param_table};
 use super::{
-    Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MaterialId, Modifier, ModifierSlot, Operation,
-    Operator, Shape,
+    Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MarchSettings, MaterialId, Modifier, ModifierSlot,
+    Operation, Operator, Shape,
 };
 use isolith_geometry::Transform;
 
@@ -50,6 +50,9 @@ pub struct Node {
     pub dynamics: Vec<DynamicSlot>,
     /// The modifiers of the node and its subtree, in its own space, in order of application; objects and groups only.
     pub modifiers: Vec<ModifierSlot>,
+    /// How the parts below it are marched; objects, groups and instancers only. The nearest node above a part that has
+    /// other settings than the usual ones decides.
+    pub march: MarchSettings,
     /// The kind of the node, with its data.
     pub kind: NodeKind,
 }
@@ -71,6 +74,7 @@ impl Node {
             weight: 1.0,
             dynamics: Vec::new(),
             modifiers: Vec::new(),
+            march: MarchSettings::default(),
             kind,
         }
     }
@@ -129,12 +133,18 @@ impl Node {
         self.operation == Operation::Add
     }
 
+    /// The same node, marched in this manner.
+    pub fn marched(mut self, march: MarchSettings) -> Self {
+        self.march = march;
+        self
+    }
+
     /// Whether it can be an operand: only objects and groups have a field of their own.
     pub fn has_field(&self) -> bool {
         matches!(self.kind, NodeKind::Group(_) | NodeKind::Object(_))
     }
 
-    /// Whether it can have dynamics.
+    /// Whether it can have dynamics, and settings of its march.
     pub fn can_move(&self) -> bool {
         self.has_field() || matches!(self.kind, NodeKind::Instancer(_))
     }

@@ -3,6 +3,7 @@
 use crate::arrangement::{BoundsEdge, CopiedPart, OriginPlace};
 use crate::keymap::Keymap;
 use crate::navigation::Side;
+use crate::pass_step::PassStep;
 use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
@@ -205,6 +206,8 @@ pub enum Command {
     CycleShading,
     /// Switch to this view for debugging, or back.
     ShowView(ViewMode),
+    /// Show the picture after another pass over the parts of the scene.
+    ShowPass(PassStep),
     /// Accumulate this many samples per pixel.
     Samples(u32),
 }

@@ -14,7 +14,7 @@ use crate::root::Editor;
 use crate::state::{EditorState, Request};
 use crate::{
     arrange, camera_view, clipboard, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion,
-    relations, seeds, selection,
+    pass_view, relations, seeds, selection,
 };
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operation, Operator};
@@ -151,6 +151,7 @@ fn run_on_view(state: &mut EditorState, command: Command) {
         Command::ShowShading(shading) => state.view.show_shading(shading),
         Command::CycleShading => state.view.cycle_shading(),
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
+        Command::ShowPass(step) => pass_view::step(state, step),
         Command::Samples(samples) => state.view.samples = samples,
         Command::SplitView(count) => state.requests.push(Request::SplitView(count)),
         // Those of a window in front or a file.

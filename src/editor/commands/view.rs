@@ -11,6 +11,7 @@ use egui_material_icons::icons::{
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::navigation::Side;
+use crate::pass_step::PassStep;
 use crate::view_state::BOOKMARKS;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
@@ -72,12 +73,26 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = info.switch(|state, command| command == Command::ShowView(state.view.view_mode));
         if matches!(view_mode, ViewMode::Distance | ViewMode::Nodes) { info.group() } else { info }
     }));
+    all.extend(passes());
     all.extend([1, 16, 64, 256, 1024].map(|samples| {
         let label = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
         CommandInfo::new(Menu::Samples, Command::Samples(samples), None, label, SAMPLES)
             .switch(|state, command| command == Command::Samples(state.view.samples))
     }));
     all
+}
+
+/// Steps through the passes over the parts of the scene.
+fn passes() -> [CommandInfo; 3] {
+    let of = |step, label, help| CommandInfo::new(Menu::Debug, Command::ShowPass(step), None, label, help);
+    let next = "The picture after one more part of the scene is marched; after all of them, after the first";
+    let previous = "The picture before the last part of the scene is marched; before the first, after all";
+    let all = "The picture after all parts of the scene are marched";
+    [
+        of(PassStep::Next, "Debug: next pass", next).group(),
+        of(PassStep::Previous, "Debug: previous pass", previous),
+        of(PassStep::All, "Debug: all passes", all).switch(|state, _| state.view.passes.is_none()),
+    ]
 }
 
 /// What the viewport shows besides the scene, playback, and the windows in front.

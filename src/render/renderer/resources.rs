@@ -10,7 +10,8 @@ use super::mesh_materials::MeshMaterials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::slot::Slot;
-use crate::frame::plan::{Dispatch, FramePlan, Room, TILE};
+use crate::frame::plan::{Dispatch, FramePlan, Room};
+use crate::frame::rect::TILE;
 use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
 use crate::pipelines::field::FieldBuffers;
@@ -358,7 +359,8 @@ impl FrameResources {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::plan::{SUBTILES, TILE};
+    use crate::frame::plan::SUBTILES;
+    use crate::frame::rect::TILE;
     use crate::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
     use crate::resources::buffers::DataTexture;
     use crate::resources::hierarchy::COPIES_LINK;

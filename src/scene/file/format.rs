@@ -13,8 +13,8 @@ use super::list::at_most;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
-    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Operation,
-    PackedFiles, Timeline, whole,
+    MAX_MODIFIERS, MarchSettings, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object,
+    Operation, PackedFiles, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -101,6 +101,9 @@ pub(super) struct NodeFile<L = Light> {
     /// Modifiers of the node and its subtree, in order of application.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_MODIFIERS>")]
     pub modifiers: Vec<ModifierSlot>,
+    /// How the parts below it are marched.
+    #[serde(default, skip_serializing_if = "MarchSettings::is_usual")]
+    pub march: MarchSettings,
     /// Joins its children.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<Group>,
@@ -180,6 +183,7 @@ impl From<&Node> for NodeFile {
             weight: node.weight,
             dynamics: node.dynamics.clone(),
             modifiers: node.modifiers.clone(),
+            march: node.march,
             group: None,
             object: None,
             instancer: None,
@@ -226,6 +230,7 @@ impl NodeFile {
             weight: self.weight,
             dynamics: self.dynamics,
             modifiers: self.modifiers,
+            march: self.march,
             kind,
         })
     }

@@ -255,6 +255,7 @@ impl NodeFile<LightV1> {
             weight: self.weight,
             dynamics: self.dynamics,
             modifiers: self.modifiers,
+            march: self.march,
             group: self.group,
             object: self.object,
             instancer: self.instancer,
