@@ -82,7 +82,7 @@ fn cone_interval(component: Component, cone: Cone, place: vec2u) -> vec2f {
     let reached = min(length(far_corner) + cone.axis.skipped, 1e9);
     let interval = bounds_interval(component, cone.axis, cone.spread * reached);
     let entry = cone_half_space_entry(component, place * TILE);
-    return vec2f(max(max(interval.x, view.near), entry), min(interval.y, view.far));
+    return vec2f(max(max(interval.x, dispatch.near), entry), min(interval.y, dispatch.far));
 }
 
 @compute @workgroup_size(64)

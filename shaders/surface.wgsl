@@ -64,7 +64,7 @@ const ENTRY_STEPS: u32 = 2u;
 fn surface_entered(ray: Ray, t: f32, seen: bool) -> Surface {
     var found: Surface;
     var at = t;
-    var back = ENTRY * view.footprint * t;
+    var back = ENTRY * dispatch.footprint * t;
     var looks = 0u;
     var steps = 0u;
     loop {

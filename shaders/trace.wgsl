@@ -66,7 +66,7 @@ fn trace(
     let traced = trace_march(component, pixel, subtile, lane, depth, exists);
     if exists {
         // The last step may have ended behind the far limit.
-        let is_nearer = traced.t < min(depth, view.far);
+        let is_nearer = traced.t < min(depth, dispatch.far);
         if is_nearer || !traced.ended {
             atomicOr(&has_hits[subtile_of(lane)], 1u);
         }

@@ -2,6 +2,7 @@
 
 mod frames;
 mod light;
+mod passes;
 mod shading;
 
 use std::path::{Path, PathBuf};

@@ -35,7 +35,7 @@ pub fn unlimited() -> Vec<(&'static str, Scene, DVec3)> {
 }
 
 /// What is wrong about the pictures of a scene by every evaluator.
-fn faults(drawn: &BenchScene, meant: &BenchScene) -> Vec<String> {
+pub fn faults(drawn: &BenchScene, meant: &BenchScene) -> Vec<String> {
     let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [SIDE, SIDE], &|_| ());
     let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
     let hits = reference.buffers.depth.iter().filter(|depth| depth.is_finite()).count();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use image::{Rgba, RgbaImage};
 use isolith::field::{GBuffer, flatten};
-use isolith::render::EvalStrategy;
+use isolith::render::{EvalStrategy, TracedParts};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
 
 use crate::gpu::{BenchScene, scenes, shared};
@@ -54,7 +54,7 @@ fn distance(a: &Rgba<u8>, b: &Rgba<u8>) -> u8 {
 fn every_scene_looks_as_accepted() {
     let info = shared().gpu.info.clone();
     let is_lavapipe = info.driver == "llvmpipe";
-    if std::env::var_os("ISOLITH_ACCEPT_GOLDEN").is_some_and(|value| value == "1") {
+    if is_accepting() {
         assert!(is_lavapipe, "pictures are accepted on lavapipe only, and this is {}", info.name);
         for scene in scenes().chain(moved_on()) {
             let picture = image(&scene.render(SIDE, EvalStrategy::Interpreter));
@@ -64,6 +64,44 @@ fn every_scene_looks_as_accepted() {
     let gate = if is_lavapipe { Gate::Exact } else { Gate::Close };
     compare_with_accepted("interpreted", gate, |scene, side| scene.render(side, EvalStrategy::Interpreter));
     compare(moved_on(), "interpreted", gate, |scene, side| scene.render(side, EvalStrategy::Interpreter));
+}
+
+/// The scene whose passes have pictures of their own.
+const IN_PASSES: &str = "terrain";
+
+/// The picture of [`IN_PASSES`] after a number of passes over its parts, `side` by `side` pixels.
+fn after_passes(passes: u32, side: u32) -> GBuffer {
+    let scene = scenes().find(|scene| scene.name == IN_PASSES).expect("it is shipped");
+    shared().renderer.set_traced(TracedParts { passes: Some(passes), ..TracedParts::default() });
+    let picture = scene.render(side, EvalStrategy::Interpreter);
+    shared().renderer.set_traced(TracedParts::default());
+    picture
+}
+
+/// The names of its pictures, with the number of passes. After the last one it is that of the scene.
+fn passes() -> [(String, u32); 3] {
+    [1, 2, 3].map(|passes| (format!("{IN_PASSES}-pass-{passes}"), passes))
+}
+
+#[test]
+fn pictures_after_each_pass_look_as_accepted() {
+    let is_lavapipe = shared().gpu.info.driver == "llvmpipe";
+    let gate = if is_lavapipe { Gate::Exact } else { Gate::Close };
+    for (name, passes) in passes() {
+        let picture = image(&after_passes(passes, SIDE));
+        if is_accepting() {
+            picture.save(accepted_path(&name)).expect("the accepted picture can be written");
+        }
+        let accepted = image::open(accepted_path(&name)).expect("accepted").to_rgba8();
+        if let Err(fault) = gate.check(&picture, &accepted) {
+            panic!("{name}: {fault}; see {}", keep(&name, &picture, &accepted).display());
+        }
+    }
+}
+
+/// Whether the pictures as they are drawn now are accepted.
+fn is_accepting() -> bool {
+    std::env::var_os("ISOLITH_ACCEPT_GOLDEN").is_some_and(|value| value == "1")
 }
 
 /// Scenes of copies that move, and the moment of their second picture, in seconds.
@@ -119,7 +157,8 @@ fn compare(all: impl Iterator<Item = BenchScene>, how: &str, gate: Gate, draw: i
 
 #[test]
 fn every_accepted_picture_has_its_scene() {
-    let names: Vec<_> = scenes().chain(moved_on()).map(|scene| format!("{}.png", scene.name)).collect();
+    let of_scenes = scenes().chain(moved_on()).map(|scene| scene.name);
+    let names: Vec<_> = of_scenes.chain(passes().map(|(name, _)| name)).map(|name| format!("{name}.png")).collect();
     for entry in std::fs::read_dir(golden_folder()).expect("the folder can be read") {
         let name = entry.expect("an entry can be read").file_name().to_string_lossy().into_owned();
         assert!(names.contains(&name), "tests/golden/{name} belongs to no scene");

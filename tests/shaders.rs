@@ -253,7 +253,11 @@ fn dispatch_params() -> Layout {
             compacted,
             rays,
             hits,
-            max_cells
+            max_cells,
+            near,
+            far,
+            footprint,
+            copy_steps
         }
     )
 }

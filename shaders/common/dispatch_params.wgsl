@@ -24,4 +24,11 @@ struct DispatchParams {
     hits: u32,
     // Cells of an instancer that an invocation may look at in this dispatch.
     max_cells: u32,
+    // Where rays from the eye begin to see the component, and where they cease to.
+    near: f32,
+    far: f32,
+    // Width of a pixel at distance 1 by which the accepted error of a hit is measured.
+    footprint: f32,
+    // Steps that a ray may take through one copy.
+    copy_steps: u32,
 }

@@ -19,12 +19,13 @@ struct March {
 }
 
 // Marches from `start` to a hit, to beyond `exit`, or through `steps` evaluations. `first_descent`:
-// expected descent of the field there per distance, 0 if unknown.
+// expected descent of the field there per distance, 0 if unknown. `size`: width of a pixel at
+// distance 1, by which errors are measured.
 //
 // A step is as long as the sphere around the next point is expected to touch the one around this
 // (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023). If the two leave a
 // gap, the march takes the step back to the end of the first sphere.
-fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_descent: f32, steps: u32) -> March {
+fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_descent: f32, steps: u32, size: f32) -> March {
     let reach = length(component.eye);
     var state = march_begin(start, first_descent);
     for (var step = 0u; step < steps; step += 1u) {
@@ -50,11 +51,11 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
             continue;
         }
         state.relaxed = false;
-        if sample.f > 0.0 && state.t + sample.f + MIN_STEP_LIMIT * view.footprint * state.t >= state.overshoot.x - state.overshoot.y {
+        if sample.f > 0.0 && state.t + sample.f + MIN_STEP_LIMIT * size * state.t >= state.overshoot.x - state.overshoot.y {
             march_accept_overshoot(&state, &sample);
         }
         state.overshoot.x = NEVER;
-        let footprint = view.footprint * state.t;
+        let footprint = size * state.t;
         let f = sample.f;
         let bracketed = state.inside.x < NEVER;
         // Whether an overstep ended outside, without a surface where its line led.

@@ -19,11 +19,11 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let factor = sqrt(dot(rows_of[0], rows_of[0]) + dot(rows_of[1], rows_of[1]) + dot(rows_of[2], rows_of[2]));
     let spread = 0.75 * f32(TILE) * view.footprint * factor;
     let corner = max(abs(instancer.bounds_low - origin), abs(instancer.bounds_high - origin));
-    let far = min(view.far, 1.01 * length(min(corner, vec3f(1e15))) / length(direction) + 1.0);
-    let walk = copy_walk_begin(COPY_OF_ANY, origin, direction, view.near, far, spread, 0u);
+    let far = min(dispatch.far, 1.01 * length(min(corner, vec3f(1e15))) / length(direction) + 1.0);
+    let walk = copy_walk_begin(COPY_OF_ANY, origin, direction, dispatch.near, far, spread, 0u);
     let is_met = id.x < columns * rows && (walk.left > 0 || walk.open > 0u);
     // Slightly early, for the rays beside the axis.
-    let entry = max(walk.near * 0.99, view.near);
+    let entry = max(walk.near * 0.99, dispatch.near);
     let hiz = vec4f(cone_hiz(place, 0u), cone_hiz(place, 1u), cone_hiz(place, 2u), cone_hiz(place, 3u));
     let starts = select(vec4f(CONE_PASSED), vec4f(entry), vec4<bool>(is_met) & (vec4f(entry) <= hiz));
     var start = array<f32, 4>(starts.x, starts.y, starts.z, starts.w);

@@ -15,11 +15,11 @@ const TRACE_IN_COPY: i32 = 3;
 
 fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, depth: f32, exists: bool) -> Traced {
     let place = select(0u, copied_place(pixel), exists);
-    let resume = select(view.near, textureLoad(march_target, pixel).x, dispatch.relaunch > 0u);
+    let resume = select(dispatch.near, textureLoad(march_target, pixel).x, dispatch.relaunch > 0u);
     let runs = exists && resume != MARCH_ENDED;
     let left_at = select(vec4i(0), copied[place + 1u], dispatch.relaunch > 0u);
-    let limit = min(depth, view.far);
-    let start = select(view.near, subtile.start, dispatch.compacted == 0u);
+    let limit = min(depth, dispatch.far);
+    let start = select(dispatch.near, subtile.start, dispatch.compacted == 0u);
     let origin = instancer_local_point(vec3f(0.0));
     let direction = instancer_local_direction(view_direction(pixel));
     var walk = copy_walk_begin(component.kind, origin, direction, start, select(-1.0, limit, runs), 0.0, dispatch.max_cells);
@@ -46,14 +46,16 @@ fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, 
         let exit = min(interval.y, visit.exit * stretch);
         let left = dispatch.max_steps - traced.evaluations;
         let meets = entry <= exit;
-        let marched = march_along(component, ray, entry, exit, 0.0, select(0u, left, meets));
+        let most = min(left, dispatch.copy_steps);
+        let marched = march_along(component, ray, entry, exit, 0.0, select(0u, most, meets), dispatch.footprint);
         traced.evaluations += marched.evaluations;
         let t = select(NEVER, marched.t / stretch, marched.hit);
         if t < min(limit, traced.t) {
             traced.t = t;
             hit = visit.copy.place;
         }
-        if !marched.ended || (meets && left == 0u) {
+        // A ray that needs more steps than it may take passes the copy.
+        if (!marched.ended && marched.evaluations < dispatch.copy_steps) || (meets && left == 0u) {
             traced.ended = false;
             traced.resume = marched.t / stretch;
             leaves_at = vec4i(visit.copy.place, TRACE_IN_COPY);

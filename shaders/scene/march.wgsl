@@ -67,7 +67,7 @@ fn scene_march(ray: Ray, near: f32, begun: SceneMarch) -> SceneMarch {
         let exit = min(march.visit.exit, march.t);
         let steps = select(0u, scene_limits.max_evaluations - scene_evaluations, start <= exit);
         field_begin(component);
-        let marched = march_along(component, local, start, exit, 0.0, steps);
+        let marched = march_along(component, local, start, exit, 0.0, steps, view.footprint);
         scene_evaluations += marched.evaluations;
         if marched.hit && marched.t < march.t {
             march.t = marched.t;

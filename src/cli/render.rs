@@ -65,6 +65,11 @@ pub struct RenderArguments {
     /// components
     #[arg(long, value_name = "MODE", default_value = "shaded", value_parser = ViewMode::from_str, conflicts_with = "reference")]
     view: ViewMode,
+    /// Show color and depth as they stand after this pass over the parts of the scene, counted from 1; 0 shows only
+    /// what is rasterized. One part at the top of the scene after the other is marched, by their order, then from
+    /// front to back
+    #[arg(long, value_name = "N", conflicts_with = "reference")]
+    pass: Option<u32>,
     #[command(flatten)]
     film: FilmArguments,
     /// How the scene is lit: rendered by its own lights, material by a studio light, or solid, everything in clay
@@ -103,6 +108,7 @@ impl RenderArguments {
             normal: None,
             node_id: None,
             view: ViewMode::Shaded,
+            pass: None,
             film: FilmArguments::default(),
             shading: Shading::Rendered,
             reference: false,
@@ -201,6 +207,7 @@ fn make(arguments: &RenderArguments) -> Result<(), Failure> {
         camera: arguments.camera.clone(),
         view_mode: arguments.view,
         shading: arguments.shading,
+        passes: arguments.pass,
         film,
         is_linear: arguments.is_linear(),
         has_layers: arguments.layers,

@@ -6,7 +6,7 @@ use super::multi_edit::MultiEdit;
 use super::widgets::{self, MIXED};
 use super::{inspector_model, inspector_params, shape_change, theme};
 use isolith_jobs::Task;
-use isolith_scene::{CameraNode, MeshNode, Node, NodeKind, Object, Params, Part, ShapeKind};
+use isolith_scene::{CameraNode, MarchSettings, MeshNode, Node, NodeKind, Object, Params, Part, ShapeKind};
 
 fn object(n: &Node) -> Option<&Object> {
     if let NodeKind::Object(o) = &n.kind { Some(o) } else { None }
@@ -78,6 +78,16 @@ pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
         if !mesh.clip.is_empty() {
             inspector_params::row(ui, edit, Part::Mesh, "clip_time");
             inspector_params::row(ui, edit, Part::Mesh, "clip_speed");
+        }
+    });
+}
+
+/// How a part of the scene is marched: folded, since few parts need more than the usual settings.
+pub fn march(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
+    let is_usual = edit.common(|node| node.march.is_usual()) == Some(true);
+    widgets::folded_card(ui, "Ray march", !is_usual, |ui| {
+        for param in MarchSettings::default().params() {
+            inspector_params::row(ui, edit, Part::March, param.name);
         }
     });
 }

@@ -34,11 +34,16 @@ pub fn row<R>(ui: &mut Ui, label: &str, help: &str, add: impl FnOnce(&mut Ui) ->
 
 /// A card with a title.
 pub fn card<R>(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
+    folded_card(ui, title, true, add)
+}
+
+/// The same, at first open or closed.
+pub fn folded_card<R>(ui: &mut Ui, title: &str, is_open: bool, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
     let frame = egui::Frame::new().fill(*theme::CARD).corner_radius(7.0).inner_margin(egui::Margin::symmetric(10, 8));
     let content = |ui: &mut Ui| {
         ui.set_width(ui.available_width());
         let header = egui::CollapsingHeader::new(RichText::new(title).strong().color(theme::STRONG));
-        header.default_open(true).show_unindented(ui, |ui| {
+        header.default_open(is_open).show_unindented(ui, |ui| {
             ui.add_space(2.0);
             ui.push_id(title, add).inner
         })

@@ -14,8 +14,8 @@ use crate::geometry::{Camera, Lens};
 use crate::jobs::Task;
 use crate::mesh::TriangleMesh;
 use crate::render::driver::loop_iterations;
-use crate::render::{AdapterChoice, EvalStrategy, Film, Gpu, RenderError, Renderer, StillWatch};
-use crate::scene::Scene;
+use crate::render::{AdapterChoice, EvalStrategy, Film, Gpu, RenderError, Renderer, StillWatch, TracedParts};
+use crate::scene::{NodeId, Scene};
 use crate::session::PreparedScene;
 
 /// Most pixels by which a lens may move the picture: f32 keeps its place to a thousandth of a pixel.
@@ -32,6 +32,8 @@ pub struct StillSettings {
     pub view_mode: ViewMode,
     /// How the scene is lit.
     pub shading: Shading,
+    /// Number of passes over components after which the picture is shown; `None` for all.
+    pub passes: Option<u32>,
     /// Samples, and the background. The lens is that of the camera.
     pub film: Film,
     /// Whether the light is wanted as it is before exposure and view transform.
@@ -101,6 +103,7 @@ impl Stills {
         let refused = prepared.warnings_of_fields();
         let warnings = flat.warnings.iter().cloned().chain(missing).chain(refused).collect();
         let (camera, lens) = choose_camera(&flat, &meshes, &settings)?;
+        check_passes(&flat, &camera, &settings, &names)?;
         let film = with_lens(settings.film, lens, &camera, settings.size[1])?;
         let flat = flat.shaded(settings.shading);
         Ok(Still { flat, meshes, camera, film, settings, names, warnings })
@@ -141,6 +144,7 @@ impl StillPainter {
         let view_mode = settings.view_mode;
         let renderer = self.renderer(view_mode)?;
         renderer.set_cancel(task.flag());
+        renderer.set_traced(TracedParts { passes: settings.passes, ..TracedParts::default() });
         let share_of_picture = match settings.has_layers {
             true => film.samples as f32 / (film.samples + 1) as f32,
             false => 1.0,
@@ -228,6 +232,21 @@ fn choose_camera(flat: &FlatScene, meshes: &Meshes, settings: &StillSettings) ->
     let names: Vec<_> = flat.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
     let has = if names.is_empty() { "none".to_string() } else { names.join(", ") };
     Err(ExportError::Settings(format!("there is no camera \"{name}\"; the scene has {has}")))
+}
+
+/// Refuses a pass beyond the last one.
+fn check_passes(
+    flat: &FlatScene,
+    camera: &Camera,
+    settings: &StillSettings,
+    names: &BTreeMap<u64, String>,
+) -> Result<(), ExportError> {
+    let passes = flat.component_passes(camera.position);
+    let Some(wanted) = settings.passes.filter(|wanted| *wanted as usize > passes.len()) else { return Ok(()) };
+    let name = |id: &NodeId| names.get(&id.0).map_or_else(|| id.to_string(), String::clone);
+    let listed: Vec<String> = (1..).zip(&passes).map(|(at, pass)| format!("{at} {:?}", name(&pass.node))).collect();
+    let has = if listed.is_empty() { "none".to_owned() } else { listed.join(", ") };
+    Err(ExportError::Settings(format!("there is no pass {wanted}; the passes over the scene's parts are {has}")))
 }
 
 /// The film with the lens of the camera. Refuses a lens that blurs more than the picture can be moved exactly.

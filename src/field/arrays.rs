@@ -14,7 +14,9 @@ use super::hierarchy::Hierarchy;
 use crate::light::environment_map::PlacedMap;
 use isolith_geometry::{Aabb, Camera, Lens};
 use isolith_mesh::ModelPose;
-use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
+use isolith_scene::{
+    DisplaySettings, Environment, Light, MarchSettings, MaterialId, ModifierKind, NodeId, Operator, ShapeKind,
+};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
@@ -287,6 +289,10 @@ pub struct Component {
     /// Residue of rounding local-from-component of each entry to f32, zero for groups and runs; empty for a component
     /// that is not [`LARGE`].
     pub rest: Vec<[ParamRow; 3]>,
+    /// The node at the top of the scene that it is part of; of a batch that of its first member.
+    pub top: NodeId,
+    /// How rays from the eye march it.
+    pub march: MarchSettings,
     /// Set for a type of an instancer: the component then stands in the space of a copy, `origin` included.
     pub instanced: Option<InstanceType>,
 }
@@ -329,6 +335,11 @@ impl Component {
     /// Bounds in the world, slightly grown; for a type those of all copies.
     pub fn world_bounds(&self) -> Aabb {
         self.instanced.map_or_else(|| self.grown_bounds().translated(self.origin), |of| of.bounds)
+    }
+
+    /// Whether its settings limit the steps of a whole ray: the ray then passes it, which is no failure.
+    pub fn has_most_steps(&self) -> bool {
+        self.march.steps > 0 && self.instanced.is_none()
     }
 
     /// Whether it has modifiers.

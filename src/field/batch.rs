@@ -25,14 +25,20 @@ const MOST_SHAPES_EACH: u32 = 4;
 /// A batch is at most this many times as large as its smallest member: its numbers are relative to its center.
 const MOST_SPREAD: f64 = 32.0;
 
-/// The components of a scene, with small neighbors of one kind joined.
-pub(super) fn batched(components: Vec<Vec<Operand<'_>>>) -> Vec<Vec<Operand<'_>>> {
+/// The components of a scene, with small neighbors of one kind joined, except those that are to stay `alone`.
+pub(super) fn batched<'a>(
+    components: Vec<Vec<Operand<'a>>>,
+    alone: impl Fn(&Operand<'a>) -> bool,
+) -> Vec<Vec<Operand<'a>>> {
     let shapes = (components.len() / FEWEST_COMPONENTS).min(MOST_SHAPES);
     if shapes < 2 {
         return components;
     }
     let mut kinds: HashMap<Kind, Vec<Member>> = HashMap::new();
     for (at, fold) in components.iter().enumerate() {
+        if fold.first().is_some_and(&alone) {
+            continue;
+        }
         if let (Some(kind), Some(bounds)) = (Kind::of(fold), joinable_bounds(fold)) {
             kinds.entry(kind).or_default().push(Member { at, bounds });
         }

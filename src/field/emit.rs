@@ -13,7 +13,7 @@ use super::prepare::first_texels;
 use super::stack::shallow;
 use isolith_bricks::BrickLevels;
 use isolith_geometry::Aabb;
-use isolith_scene::{BlendKernel, MaterialId, ModifierKind, ShapeKind};
+use isolith_scene::{BlendKernel, MarchSettings, MaterialId, ModifierKind, NodeId, ShapeKind};
 
 /// A leaf's use of a material.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +87,8 @@ pub(super) fn emit(
         modifier_domains,
         copies: operands.iter().map(copies).max().unwrap_or(1),
         rest,
+        top: operands.first().map_or(NodeId(0), |first| first.outermost.id),
+        march: MarchSettings::default(),
         instanced: None,
     }
 }

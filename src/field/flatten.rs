@@ -22,6 +22,7 @@ use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::{TextureUse, TexturedMaterials};
 use super::lower_bound::fold_bounds;
+use super::marches::Marches;
 use super::non_field;
 use super::operand::Operand;
 use super::survey::Survey;
@@ -82,7 +83,7 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
         let budget = Budget::new(limits, &Cancel::default());
         let whole = united(collect(scene, &survey, budget, &mut |_, _| {}).operands);
         if !whole.is_empty() {
-            add_component(&mut flat, &mut materials, &whole, limits.rows)?;
+            add_component(&mut flat, &mut materials, &Marches::new(scene), &whole, limits.rows)?;
         }
         Ok(flat)
     })
@@ -200,12 +201,14 @@ fn flatten_surveyed(
     if cancel.is_canceled() {
         return Ok(None);
     }
-    let components = batched(operands);
+    let marches = Marches::new(scene);
+    flat.warnings.extend(marches.warnings());
+    let components = batched(operands, |first| !marches.of(first.outermost).is_usual());
     if let Some(first) = components.get(MAX_COMPONENTS).and_then(|beyond| beyond.first()) {
         return Err(FlattenError::new(first.outermost, APART, components.len(), MAX_COMPONENTS));
     }
     for operands in &components {
-        add_component(&mut flat, &mut materials, operands, limits.rows)?;
+        add_component(&mut flat, &mut materials, &marches, operands, limits.rows)?;
         if cancel.is_canceled() {
             return Ok(None);
         }
@@ -219,7 +222,7 @@ fn flatten_surveyed(
             let mut materials = materials.borrow_mut();
             // It is the last one.
             materials.instancer = (flat.instancers.len() as u32).checked_sub(1);
-            add_component(flat, &mut materials, operands, limits.rows)?;
+            add_component(flat, &mut materials, &marches, operands, limits.rows)?;
             Ok((flat.components.len() > before).then_some(before))
         };
         budget = add_instancer(&mut flat, of, placed, budget, &mut palette, &mut add)?;
@@ -305,6 +308,7 @@ impl Materials<'_> {
 fn add_component(
     flat: &mut FlatScene,
     materials: &mut Materials<'_>,
+    marches: &Marches<'_>,
     operands: &[Operand<'_>],
     most_rows: usize,
 ) -> Result<(), FlattenError> {
@@ -323,7 +327,8 @@ fn add_component(
         return refuse(STACK, depth as usize, MAX_STACK as usize);
     }
     let start = flat.nodes.len();
-    let component = emit(flat, operands, &mut |flat, user| materials.resolve(flat, user));
+    let mut component = emit(flat, operands, &mut |flat, user| materials.resolve(flat, user));
+    (component.top, component.march) = (marches.top(first.outermost), marches.of(first.outermost));
     let copies = component.copies as usize;
     flat.components.push(component);
     let limits = [

@@ -58,6 +58,8 @@ pub struct SceneCounts {
 pub struct SceneEvaluator<'a> {
     flat: &'a FlatScene,
     hierarchy: &'a Hierarchy,
+    /// Whether rays are those of an eye.
+    is_of_eye: bool,
     /// Work since its creation.
     pub counts: SceneCounts,
 }
@@ -70,7 +72,12 @@ impl<'a> SceneEvaluator<'a> {
 
     /// Uses another hierarchy over the scene's components.
     pub fn with_hierarchy(flat: &'a FlatScene, hierarchy: &'a Hierarchy) -> Self {
-        Self { flat, hierarchy, counts: SceneCounts::default() }
+        Self { flat, hierarchy, is_of_eye: false, counts: SceneCounts::default() }
+    }
+
+    /// The same for rays that start at an eye: they do not meet components nearer or farther than these are drawn.
+    pub fn of_eye(self) -> Self {
+        Self { is_of_eye: true, ..self }
     }
 
     /// The value of the scene at a point of the world. Any lower bound of the distance that is at least `within` may
@@ -204,7 +211,15 @@ impl<'a> SceneEvaluator<'a> {
         limits: RayLimits,
         nearest: &mut Option<(f64, u32)>,
     ) -> Result<(), TraceError> {
-        let hit = trace_component(self.flat, index, ray, [limits.near, limits.far], &mut self.counts.evaluations)?;
+        let march = &self.flat.components[index as usize].march;
+        let (near, far) = match self.is_of_eye {
+            true => (limits.near.max(march.near), limits.far.min(march.end())),
+            false => (limits.near, limits.far),
+        };
+        if near > far {
+            return Ok(());
+        }
+        let hit = trace_component(self.flat, index, ray, [near, far], &mut self.counts.evaluations)?;
         if let Some(t) = hit {
             *nearest = Some((t, index));
         }

@@ -35,6 +35,7 @@ mod resources;
 
 pub use frame::cost_model::coarse_size;
 pub use frame::plan;
+pub use frame::plan::TracedParts;
 pub use gpu::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use gpu::{brdf_probe, copy_probe, driver, mesh_ray_probe, probe, scene_probe};

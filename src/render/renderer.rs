@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 use super::passes::{Passes, frame_pass::Building, overlay_settings::OverlaySettings};
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
-use crate::frame::plan::{FramePlan, PixelLight, Room, TooMuch, plan};
+use crate::frame::plan::{FramePlan, PixelLight, PlannedView, Room, TooMuch, TracedParts, plan};
 use crate::gpu::Gpu;
 use crate::gpu::readback::{read_buffers, read_color, read_words_at};
 use crate::passes::shade_features::ShadeFeatures;
@@ -70,6 +70,7 @@ pub struct Renderer {
     cost_model: CostModel,
     timings: PassTimings,
     cancel: Cancel,
+    traced: TracedParts,
 }
 
 /// The plan of a picture, before any upload.
@@ -116,6 +117,7 @@ impl Renderer {
             cost_model: CostModel::new(gpu.is_software()),
             timings: PassTimings::default(),
             cancel: Cancel::default(),
+            traced: TracedParts::default(),
             gpu: gpu.clone(),
         };
         gpu.check()?;
@@ -131,6 +133,11 @@ impl Renderer {
     pub fn set_cancel(&mut self, cancel: &Cancel) {
         self.cancel = cancel.clone();
         self.tape_cache.set_cancel(cancel);
+    }
+
+    /// Sets what is traced of scenes from now on.
+    pub fn set_traced(&mut self, traced: TracedParts) {
+        self.traced = traced;
     }
 
     /// Switches timings of the passes on or off. They cost time: each component then has its own passes on the device.
@@ -213,7 +220,8 @@ impl Renderer {
         let casters = lights.iter().filter(|light| light.cast_shadows == 1).count();
         let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
         let light = PixelLight { lights: lights.len(), shadows: shadows.map_or(0.0, |shadows| shadows.per_pixel()) };
-        let plan = plan(flat, view, size, &chosen.evaluations, light, &self.cost_model, room).map_err(refused)?;
+        let shown = PlannedView { view, size, traced: self.traced };
+        let plan = plan(flat, shown, &chosen.evaluations, light, &self.cost_model, room).map_err(refused)?;
         check(&self.cancel)?;
         Ok(Prepared { chosen, plan, lights, shadows })
     }
@@ -402,7 +410,7 @@ impl Renderer {
 
     fn count_unfinished(&self, frame: &Frame) -> Result<Vec<u32>, RenderError> {
         let counts = self.resources.counts.of_components(&self.gpu, frame.origins.len())?;
-        Ok(counts.iter().map(|counts| counts[0]).collect())
+        Ok(counts.iter().zip(&frame.is_limited).map(|(counts, limited)| if *limited { 0 } else { counts[0] }).collect())
     }
 
     /// Warnings about components with rays that did not end within the step limit.

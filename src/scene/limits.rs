@@ -84,6 +84,12 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of a profile.
 pub const CORNERS: [usize; 2] = [3, 256];
 
+/// Most files that are packed into a scene.
+pub const MAX_PACKED_FILES: usize = 1_000;
+/// Most bytes of the files that are packed into a scene, together. Their text takes a third more, and recovery writes it
+/// every few seconds.
+pub const MAX_PACKED_BYTES: usize = 64 << 20;
+
 /// Largest file embedded in the scene, in bytes.
 pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
 /// Greatest width and height of an image, in pixels.
@@ -112,6 +118,8 @@ pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, M
 pub const OPTIONAL_PATH_LENGTH: Limits = Limits::new([0.0, MAX_PATH as f64], [0.0, MAX_PATH as f64], "").whole();
 /// Voxels along the longest side of a model; 0 leaves the choice to the model.
 pub const VOXELS: Limits = Limits::new([0.0, 512.0], [0.0, isolith_bricks::RESOLUTIONS[1] as f64], "").whole();
+/// Voxels along the longest side of a baked group; 0 does not bake it.
+pub const BAKED_VOXELS: Limits = VOXELS;
 /// Size of a voxel of a model; 0 for none.
 pub const VOXEL_SIZE: Limits = Limits::new([0.0, 0.05], [0.0, 1e3], "m");
 /// Times within an animation clip.
@@ -210,6 +218,14 @@ pub const REACH: Limits = Limits::new([0.5, 4.0], [0.1, 10.0], "");
 pub const FOV: Limits = Limits::new([10.0, 120.0], [0.1, 170.0], "°");
 /// Diameter of the opening of a lens.
 pub const APERTURE: Limits = Limits::new([0.0, 0.1], [0.0, 100.0], "m");
+/// Place of a part of the scene in the order of marching.
+pub const MARCH_ORDER: Limits = Limits::new([0.0, 10.0], [0.0, 1_000.0], "").whole();
+/// Distance from the eye at which a part of the scene begins or ends; 0 for none.
+pub const CUT_OFF: Limits = Limits::new([0.0, 1e3], [0.0, 1e9], "m");
+/// How exactly rays find a surface, in relation to the usual.
+pub const PRECISION: Limits = Limits::new([0.1, 1.0], [0.01, 10.0], "");
+/// Most steps of a ray through a part of the scene; 0 for no limit.
+pub const MARCH_STEPS: Limits = Limits::new([0.0, 256.0], [0.0, 65_536.0], "").whole();
 /// Near and far limits of a camera.
 pub const CLIP: Limits = Limits::new([1e-3, 1e4], [1e-6, 1e9], "m");
 /// Distance from one copy to the next, and lengths of waves.

@@ -44,6 +44,8 @@ pub enum Part {
     Node,
     /// Its transform.
     Transform,
+    /// How it is marched.
+    March,
     /// The modifier at this index of its list.
     Modifier(usize),
     /// The motion at this index of its list.
@@ -79,7 +81,8 @@ impl Part {
         let dynamics = (0..node.dynamics.len()).map(Self::Dynamic);
         let modifiers = (0..node.modifiers.len()).map(Self::Modifier);
         let lists = dynamics.chain(modifiers).chain([kind]).chain((0..masks).map(Self::Mask));
-        [Self::Node, Self::Transform].into_iter().chain(lists)
+        let march = node.can_move().then_some(Self::March);
+        [Self::Node, Self::Transform].into_iter().chain(march).chain(lists)
     }
 
     /// The parameters of this part of the node, if it exists.
@@ -87,6 +90,7 @@ impl Part {
         Some(match (self, &node.kind) {
             (Self::Node, _) => node,
             (Self::Transform, _) => &node.transform,
+            (Self::March, _) => &node.march,
             (Self::Modifier(place), _) => node.modifiers.get(place)?,
             (Self::Dynamic(place), _) => node.dynamics.get(place)?,
             (Self::Instancer, NodeKind::Instancer(instancer)) => &**instancer,
@@ -107,6 +111,7 @@ impl Part {
         }
         Some(match (self, &mut node.kind) {
             (Self::Transform, _) => &mut node.transform,
+            (Self::March, _) => &mut node.march,
             (Self::Modifier(place), _) => node.modifiers.get_mut(place)?,
             (Self::Dynamic(place), _) => node.dynamics.get_mut(place)?,
             (Self::Instancer, NodeKind::Instancer(instancer)) => &mut **instancer,
@@ -125,6 +130,7 @@ impl Part {
         let (part, inner, place) = match self {
             Self::Node => return name.to_owned(),
             Self::Transform => return format!("transform.{name}"),
+            Self::March => return format!("march.{name}"),
             Self::Shape => return format!("object.shape.{name}"),
             Self::Operator => return format!("group.{name}"),
             Self::Instancer => return format!("instancer.{name}"),
@@ -141,8 +147,9 @@ impl Part {
 
     /// The part and the parameter's name for a field in files; the inverse of [`Part::field`].
     fn of_field(field: &str) -> Option<(Self, &str)> {
-        const PARTS: [(&str, Part); 7] = [
+        const PARTS: [(&str, Part); 8] = [
             ("transform.", Part::Transform),
+            ("march.", Part::March),
             ("object.shape.", Part::Shape),
             ("group.", Part::Operator),
             ("instancer.", Part::Instancer),

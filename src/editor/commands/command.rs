@@ -3,6 +3,7 @@
 use crate::arrangement::{BoundsEdge, CopiedPart, OriginPlace};
 use crate::keymap::Keymap;
 use crate::navigation::Side;
+use crate::pass_step::PassStep;
 use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
@@ -23,6 +24,10 @@ pub enum Command {
     Reload,
     /// Reload the models of the scene.
     ReloadModels,
+    /// Store the files of the models in the scene.
+    PackFiles,
+    /// Write the files of the models beside the scene.
+    UnpackFiles,
     /// List recoverable work.
     Recover,
     /// Open the render dialog.
@@ -55,6 +60,12 @@ pub enum Command {
     Rename,
     /// Duplicate the selection.
     Duplicate,
+    /// Duplicate the selection so that objects share shape and material with their copies.
+    DuplicateLinked,
+    /// Take the selection out of its sets of linked objects.
+    Unlink,
+    /// Select what is linked with the selection.
+    SelectLinked,
     /// Delete the selection.
     Delete,
     /// Group the selection.
@@ -73,8 +84,10 @@ pub enum Command {
     RerollSeeds,
     /// Give the selected instancers, or a new one of the selection, ready-made settings.
     ApplyPreset(InstancerPreset),
-    /// Switch the selection between subtracted and joined.
-    ToggleNegative,
+    /// Switch the selection between subtracted and added.
+    ToggleSubtract,
+    /// Switch the selection between intersected and added.
+    ToggleIntersect,
     /// Select every node.
     SelectAll,
     /// Clear the selection.
@@ -143,6 +156,8 @@ pub enum Command {
     LockCamera,
     /// Toggle the safe areas in the frame of a camera.
     ToggleSafeAreas,
+    /// Show this many viewports: 1, 2 or 4.
+    SplitView(usize),
     /// Keep the view in this bookmark.
     SetBookmark(usize),
     /// Show the view of this bookmark.
@@ -191,6 +206,8 @@ pub enum Command {
     CycleShading,
     /// Switch to this view for debugging, or back.
     ShowView(ViewMode),
+    /// Show the picture after another pass over the parts of the scene.
+    ShowPass(PassStep),
     /// Accumulate this many samples per pixel.
     Samples(u32),
 }

@@ -4,12 +4,14 @@ use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_BOOKMARK, ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_CROP_FREE, ICON_DASHBOARD, ICON_FIT_SCREEN,
-    ICON_GRID_ON, ICON_LIST, ICON_LOCK, ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_VIEW_IN_AR,
+    ICON_GRID_ON, ICON_LIST, ICON_LOCK, ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_SPLITSCREEN,
+    ICON_VIEW_IN_AR,
 };
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::navigation::Side;
+use crate::pass_step::PassStep;
 use crate::view_state::BOOKMARKS;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
@@ -47,6 +49,13 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = CommandInfo::new(Menu::View, Command::LookFrom(side), None, label, help).key(modifiers, key);
         all.push(if index == 0 { info.group() } else { info });
     }
+    let split =
+        "Viewports beside each other, each with a view and a shading of its own; keys mean the one under the pointer";
+    let views = [(1, "One view"), (2, "Two views"), (4, "Four views")];
+    all.extend(views.map(|(count, label)| {
+        let icon = if count == 1 { ICON_CROP_FREE } else { ICON_SPLITSCREEN };
+        CommandInfo::new(Menu::Split, Command::SplitView(count), Icon::from(icon), label, split)
+    }));
     all.extend(shown());
     all.extend(Shading::ALL.into_iter().map(|shading| {
         let label = format!("Shading: {}", shading.label());
@@ -64,12 +73,26 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = info.switch(|state, command| command == Command::ShowView(state.view.view_mode));
         if matches!(view_mode, ViewMode::Distance | ViewMode::Nodes) { info.group() } else { info }
     }));
+    all.extend(passes());
     all.extend([1, 16, 64, 256, 1024].map(|samples| {
         let label = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
         CommandInfo::new(Menu::Samples, Command::Samples(samples), None, label, SAMPLES)
             .switch(|state, command| command == Command::Samples(state.view.samples))
     }));
     all
+}
+
+/// Steps through the passes over the parts of the scene.
+fn passes() -> [CommandInfo; 3] {
+    let of = |step, label, help| CommandInfo::new(Menu::Debug, Command::ShowPass(step), None, label, help);
+    let next = "The picture after one more part of the scene is marched; after all of them, after the first";
+    let previous = "The picture before the last part of the scene is marched; before the first, after all";
+    let all = "The picture after all parts of the scene are marched";
+    [
+        of(PassStep::Next, "Debug: next pass", next).group(),
+        of(PassStep::Previous, "Debug: previous pass", previous),
+        of(PassStep::All, "Debug: all passes", all).switch(|state, _| state.view.passes.is_none()),
+    ]
 }
 
 /// What the viewport shows besides the scene, playback, and the windows in front.

@@ -169,13 +169,15 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Follows the ray from `near` to the first surface, or to `far`.
+    /// Follows the ray of an eye from `near` to the first surface, or to `far`. Components have limits of their own,
+    /// see [`isolith_scene::MarchSettings`].
     pub fn march(&mut self, ray: &Ray, near: f64, far: f64) -> Result<March, TraceError> {
         self.order.clear();
         for (index, component) in self.flat.components.iter().enumerate() {
             let local = Ray { origin: ray.origin - component.origin, ..*ray };
             if let Some((entry, exit)) = self.bounds[index].ray_interval(&local) {
-                let (entry, exit) = (entry.max(near), exit.min(far));
+                let march = &component.march;
+                let (entry, exit) = (entry.max(near).max(march.near), exit.min(far).min(march.end()));
                 if entry <= exit {
                     self.order.push((entry, exit, index as u32));
                 }

@@ -3,3 +3,4 @@
 pub mod copies_cost;
 pub mod cost_model;
 pub mod plan;
+pub mod rect;

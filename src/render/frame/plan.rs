@@ -6,18 +6,17 @@
 use std::time::Duration;
 
 use bytemuck::Zeroable as _;
-use glam::{DVec2, DVec3, UVec2};
+use glam::UVec2;
 
 use crate::frame::copies_cost::{COPIES_OF_A_RAY, CopyLimits, LEAST_RELAUNCHES, walk_leaves};
 use crate::frame::cost_model::{Cost, CostModel};
+use crate::frame::rect::{Rect, ScreenProjection, TILE};
 use crate::recipe::{Extent, Pass};
 use crate::renderer::evaluation::EvaluationCost;
 use crate::resources::uniforms::DispatchParams;
 use isolith_field::{Component, FlatScene};
-use isolith_geometry::{Camera, SampleView};
+use isolith_geometry::SampleView;
 
-/// Side of a tile, in pixels: the area that a cone starts with.
-pub const TILE: u32 = 8;
 /// Subtiles along a side of a tile: the areas that cones are narrowed down to.
 pub const SUBTILES: u32 = 2;
 /// Expected time of one dispatch. Measured times scatter by a factor of two or three around it, so nearly all stay
@@ -120,6 +119,32 @@ pub struct PixelLight {
     pub shadows: f64,
 }
 
+/// What a frame shows of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct PlannedView<'a> {
+    /// The camera, moved for a sample.
+    pub view: &'a SampleView,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What is traced.
+    pub traced: TracedParts,
+}
+
+/// What is traced of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TracedParts {
+    /// Number of passes over components after which tracing ends, see [`FlatScene::component_passes`]; `None` for all.
+    pub passes: Option<u32>,
+    /// Whether settings of components cut them off by their distance from the eye.
+    pub has_cut_offs: bool,
+}
+
+impl Default for TracedParts {
+    fn default() -> Self {
+        Self { passes: None, has_cut_offs: true }
+    }
+}
+
 /// Plans a frame that fits the device. `evaluations` is parallel to the components; `light` is the work
 /// for the light of a pixel.
 ///
@@ -127,22 +152,21 @@ pub struct PixelLight {
 /// The frame would exceed `room`. The check precedes the first dispatch, since there may be millions.
 pub fn plan(
     flat: &FlatScene,
-    view: &SampleView,
-    size: [u32; 2],
+    shown: PlannedView<'_>,
     evaluations: &[EvaluationCost],
     light: PixelLight,
     cost_model: &CostModel,
     room: Room,
 ) -> Result<FramePlan, TooMuch> {
+    let PlannedView { view, size, .. } = shown;
     let whole = Rect { origin: [0, 0], end: size };
-    let camera = &view.camera;
     let projection = ScreenProjection::new(view, size);
-    let seen: Vec<(usize, Rect, Marching)> = front_to_back(flat, camera)
+    let seen: Vec<(usize, Rect, Marching)> = traced(flat, shown)
         .into_iter()
         .filter_map(|index| {
             let component = &flat.components[index];
             let rect = Rect::around(component, &projection, size)?;
-            Some((index, rect, Marching::of(flat, component, evaluations[index], cost_model)))
+            Some((index, rect, Marching::of(flat, component, shown, evaluations[index], cost_model)))
         })
         .collect();
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
@@ -206,19 +230,23 @@ struct Part {
 #[derive(Clone, Copy, Debug)]
 struct Marching {
     evaluation: EvaluationCost,
-    /// Steps of a ray in one dispatch.
-    steps: u32,
     /// Number of successive dispatches after which no ray can be left.
     relaunches: u32,
-    /// Cells of an instancer that a ray looks at in one dispatch.
-    cells: u32,
     /// Cost of a pixel, and cost limit of one dispatch.
     per_pixel: f64,
     most: f64,
+    /// Limits and precision, for all of its dispatches.
+    params: DispatchParams,
 }
 
 impl Marching {
-    fn of(flat: &FlatScene, component: &Component, evaluation: EvaluationCost, cost_model: &CostModel) -> Self {
+    fn of(
+        flat: &FlatScene,
+        component: &Component,
+        shown: PlannedView<'_>,
+        evaluation: EvaluationCost,
+        cost_model: &CostModel,
+    ) -> Self {
         let instancer = component.instanced.map(|of| &flat.instancers[of.instancer as usize]);
         let EvaluationCost { straight, iterations, leaves } = evaluation;
         let (max_steps, at_once) = if component.world_bounds().is_finite() {
@@ -227,12 +255,17 @@ impl Marching {
             (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED)
         };
         let limits = instancer.map(|of| CopyLimits::of(of, MAX_ITERATIONS));
-        let steps = (limits.map_or(MAX_ITERATIONS, |of| of.iterations) / iterations).clamp(1, at_once);
+        let (params, max_steps) = settings_of(component, shown, max_steps);
+        let steps = (limits.map_or(MAX_ITERATIONS, |of| of.iterations) / iterations).clamp(1, at_once.min(max_steps));
         let walk = instancer.map_or(0.0, walk_leaves);
         let per_pixel = leaves * TRACE_EVALUATIONS * instancer.map_or(1.0, |_| COPIES_OF_A_RAY) + walk;
         let (cells, least) = limits.map_or((0, 1), |of| (of.cells, LEAST_RELAUNCHES));
         let most = cost_model.cost_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
-        Self { evaluation, steps, relaunches: max_steps.div_ceil(steps).max(least), cells, per_pixel, most }
+        let relaunches = max_steps.div_ceil(steps).max(least);
+        // All dispatches together take no more steps than the settings allow.
+        let max_steps = if component.has_most_steps() { steps.min(max_steps.div_ceil(relaunches)) } else { steps };
+        let params = DispatchParams { max_steps, max_cells: cells, ..params };
+        Self { evaluation, relaunches, per_pixel, most, params }
     }
 
     /// Number of dispatches of a component whose image lies within `rect`: for each part its cones, relaunches and
@@ -287,12 +320,11 @@ impl FramePlan {
     fn parts(&mut self, index: usize, rect: Rect, marching: Marching) -> Vec<Part> {
         let mut parts = Vec::new();
         rect.cut(marching.per_pixel, marching.most, |rect| {
-            let place = DispatchParams { list: self.lists, first_subtile: self.subtiles, ..rect.params(index as u32) };
-            parts.push(Part {
-                rect,
-                marching,
-                params: DispatchParams { max_steps: marching.steps, max_cells: marching.cells, ..place },
-            });
+            let Rect { origin, end } = rect;
+            let (list, first_subtile) = (self.lists, self.subtiles);
+            let component = index as u32;
+            let params = DispatchParams { origin, end, component, list, first_subtile, ..marching.params };
+            parts.push(Part { rect, marching, params });
             self.lists += 1;
             self.subtiles += rect.tiles() * SUBTILES * SUBTILES;
             self.longest = self.longest.max(rect.tiles());
@@ -326,142 +358,36 @@ impl FramePlan {
     }
 }
 
-/// Components ordered by their nearest points, so that hidden components come last.
-fn front_to_back(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
-    let distance = |i: usize| {
-        let c = &flat.components[i];
-        c.world_bounds().distance(camera.position)
+/// The components that are traced, in order.
+fn traced(flat: &FlatScene, PlannedView { view, traced, .. }: PlannedView<'_>) -> Vec<usize> {
+    let eye = view.camera.position;
+    match traced.passes {
+        None => flat.tracing_order(eye),
+        Some(count) => {
+            let passes = flat.component_passes(eye).into_iter().take(count as usize);
+            passes.flat_map(|pass| pass.components).collect()
+        }
+    }
+}
+
+/// The settings of a component for its dispatches, and the most steps of a ray, without limits of its own `max_steps`.
+fn settings_of(component: &Component, shown: PlannedView<'_>, max_steps: u32) -> (DispatchParams, u32) {
+    let PlannedView { view: SampleView { camera, .. }, size, traced } = shown;
+    let march = &component.march;
+    let [of_copy, of_ray] = match (march.steps, component.instanced) {
+        (0, _) => [u32::MAX, max_steps],
+        (steps, Some(_)) => [steps, max_steps],
+        (steps, None) => [u32::MAX, steps],
     };
-    let mut order: Vec<(f64, usize)> = (0..flat.components.len()).map(|i| (distance(i), i)).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    order.into_iter().map(|(_, i)| i).collect()
-}
-
-/// Projection from the world to pixels.
-struct ScreenProjection {
-    eye: DVec3,
-    forward: DVec3,
-    /// Pixels to the right per meter at depth 1.
-    right: DVec3,
-    /// Pixels downward per meter at depth 1.
-    down: DVec3,
-    /// Center of the picture.
-    center: DVec2,
-    /// Depth along the view axis below which points are not visible. In a corner, the near limit along the ray is less
-    /// along the axis.
-    near: f64,
-}
-
-impl ScreenProjection {
-    fn new(SampleView { camera, offset }: &SampleView, size: [u32; 2]) -> Self {
-        let half = DVec2::new(f64::from(size[0]), f64::from(size[1])) * 0.5;
-        let scale = half.y / camera.tan_half_fov();
-        // A moved picture reaches farther from the view axis.
-        let corner = (half + offset.abs()) / scale;
-        Self {
-            eye: camera.position,
-            forward: camera.rotation * DVec3::NEG_Z,
-            right: camera.rotation * DVec3::X * scale,
-            down: camera.rotation * DVec3::NEG_Y * scale,
-            center: half - *offset,
-            near: (camera.near * 0.5 / (1.0 + corner.length_squared()).sqrt()).max(1e-12),
-        }
-    }
-}
-
-/// Margin around the image of a component, in pixels: half a pixel from a pixel's corner to its center, half for the
-/// jitter of samples, and a sixteenth for rounding.
-const MARGIN: f64 = 1.0625;
-
-/// A rectangle of pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Rect {
-    origin: [u32; 2],
-    end: [u32; 2],
-}
-
-impl Rect {
-    /// The pixels that the component's bounds may cover; `None` if it is out of view.
-    fn around(component: &Component, projection: &ScreenProjection, size: [u32; 2]) -> Option<Self> {
-        let whole = Self { origin: [0, 0], end: size };
-        let bounds = component.world_bounds();
-        if !bounds.is_finite() {
-            return Some(whole);
-        }
-        let pixels = DVec2::new(f64::from(size[0]), f64::from(size[1]));
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let mut behind = 0;
-        for corner in bounds.translated(-projection.eye).corners() {
-            let depth = corner.dot(projection.forward);
-            if depth < projection.near {
-                behind += 1;
-                continue;
-            }
-            let p = projection.center + DVec2::new(corner.dot(projection.right), corner.dot(projection.down)) / depth;
-            low = low.min(p);
-            high = high.max(p);
-        }
-        match behind {
-            8 => return None,
-            0 => {}
-            // A part of it lies beside or behind the eye, so its projection has no simple outline.
-            _ => return Some(whole),
-        }
-        let low = (low - MARGIN).floor().max(DVec2::ZERO);
-        let high = (high + MARGIN).ceil().min(pixels);
-        if low.cmpge(high).any() {
-            return None;
-        }
-        let snap = |v: f64| (v as u32) / TILE * TILE;
-        Some(Self { origin: [snap(low.x), snap(low.y)], end: [high.x as u32, high.y as u32] })
-    }
-
-    fn pixels(&self) -> f64 {
-        f64::from(self.end[0] - self.origin[0]) * f64::from(self.end[1] - self.origin[1])
-    }
-
-    fn tiles(&self) -> u32 {
-        [0, 1].map(|i| (self.end[i] - self.origin[i]).div_ceil(TILE)).iter().product()
-    }
-
-    fn params(&self, component: u32) -> DispatchParams {
-        DispatchParams { origin: self.origin, end: self.end, component, ..DispatchParams::zeroed() }
-    }
-
-    /// Width and height of parts that cost at most `most`, but no less than one tile.
-    fn part(&self, per_pixel: f64, most: f64) -> [u32; 2] {
-        let pixels = (most / per_pixel.max(1e-9)).max(f64::from(TILE * TILE));
-        let width = self.end[0] - self.origin[0];
-        let rows = ((pixels / f64::from(width)).min(1e9) as u32 / TILE * TILE).max(TILE);
-        let columns = if f64::from(width * TILE) > pixels {
-            ((pixels / f64::from(TILE)) as u32 / TILE * TILE).max(TILE)
-        } else {
-            width
-        };
-        [columns, rows]
-    }
-
-    /// Number of parts.
-    fn parts(&self, per_pixel: f64, most: f64) -> usize {
-        let part = self.part(per_pixel, most);
-        [0, 1].map(|i| (self.end[i] - self.origin[i]).div_ceil(part[i]) as usize).iter().product()
-    }
-
-    /// Cuts the rectangle into parts, see [`Rect::part`].
-    fn cut(&self, per_pixel: f64, most: f64, mut each: impl FnMut(Self)) {
-        let [columns, rows] = self.part(per_pixel, most);
-        let mut y = self.origin[1];
-        while y < self.end[1] {
-            let bottom = y.saturating_add(rows).min(self.end[1]);
-            let mut x = self.origin[0];
-            while x < self.end[0] {
-                let right = x.saturating_add(columns).min(self.end[0]);
-                each(Self { origin: [x, y], end: [right, bottom] });
-                x = right;
-            }
-            y = bottom;
-        }
-    }
+    let [near, far] = if traced.has_cut_offs { [march.near, march.end()] } else { [0.0, f64::INFINITY] };
+    let params = DispatchParams {
+        near: camera.near.max(near) as f32,
+        far: camera.far.min(far) as f32,
+        footprint: (camera.footprint(f64::from(size[1])) / march.precision) as f32,
+        copy_steps: of_copy,
+        ..DispatchParams::zeroed()
+    };
+    (params, of_ray)
 }
 
 #[cfg(test)]

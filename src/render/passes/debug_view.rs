@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
 use super::frame_pass::{Building, FramePass};
-use crate::frame::plan::TILE;
+use crate::frame::rect::TILE;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;

@@ -5,7 +5,8 @@ use std::ops::Range;
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
 use super::frame_pass::{Building, FramePass};
-use crate::frame::plan::{SUBTILES, TILE};
+use crate::frame::plan::SUBTILES;
+use crate::frame::rect::TILE;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;

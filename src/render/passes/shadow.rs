@@ -5,7 +5,7 @@ use std::ops::Range;
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline};
 
 use super::frame_pass::{Building, FramePass};
-use crate::frame::plan::TILE;
+use crate::frame::rect::TILE;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;

@@ -55,6 +55,8 @@ pub struct Frame {
     /// Offset of the template rows of each component with such a pipeline; parallel to the components.
     pub(super) template_rows: Vec<Option<u32>>,
     pub(super) origins: Vec<isolith_scene::NodeId>,
+    /// Of each component whether its settings limit the steps of a ray.
+    pub(super) is_limited: Vec<bool>,
     /// Of each component the instancer that it is a type of.
     pub(super) instancers: Vec<Option<u32>>,
     /// Dispatches of the current part of the pass `shadow` so far.
@@ -98,6 +100,7 @@ impl Frame {
             template_rows: Vec::new(),
             rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
+            is_limited: flat.components.iter().map(isolith_field::Component::has_most_steps).collect(),
             instancers: flat.components.iter().map(|c| c.instanced.map(|of| of.instancer)).collect(),
             shadow_relaunches: 0,
             unfinished_shadows: 0,

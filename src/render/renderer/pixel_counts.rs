@@ -1,7 +1,7 @@
 //! Counters of components and pixels. Those of pixels follow at the end of the buffer. If the pipelines do not count,
 //! the buffer has no room for them, and no pass writes them.
 
-use crate::frame::plan::TILE;
+use crate::frame::rect::TILE;
 use crate::gpu::readback::read_words_at;
 use crate::gpu::{Gpu, GpuError};
 use crate::resources::buffers::SyncedBuffer;

@@ -11,7 +11,8 @@ use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::scene::ShadedScene;
 use super::slot::Slot;
-use crate::frame::plan::{Dispatch, FramePlan, Room, TILE};
+use crate::frame::plan::{Dispatch, FramePlan, Room};
+use crate::frame::rect::TILE;
 use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
 use crate::pipelines::field::FieldBuffers;
@@ -362,7 +363,8 @@ impl FrameResources {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::plan::{SUBTILES, TILE};
+    use crate::frame::plan::SUBTILES;
+    use crate::frame::rect::TILE;
     use crate::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
     use crate::resources::buffers::DataTexture;
     use crate::resources::hierarchy::COPIES_LINK;

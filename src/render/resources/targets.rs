@@ -18,7 +18,8 @@
 
 use wgpu::{TextureFormat, TextureUsages};
 
-use crate::frame::plan::{SUBTILES, TILE};
+use crate::frame::plan::SUBTILES;
+use crate::frame::rect::TILE;
 
 /// Depth of pixels without a hit.
 pub const BACKGROUND: f32 = 1e30;

@@ -198,7 +198,7 @@ impl GpuComponent {
 
 /// Parameters of one dispatch: its component, its part of the picture, its step limit.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct DispatchParams {
     /// Upper left pixel.
     pub origin: [u32; 2],
@@ -224,4 +224,12 @@ pub struct DispatchParams {
     pub hits: u32,
     /// Limit of the cells of an instancer that an invocation looks at.
     pub max_cells: u32,
+    /// Where rays from the eye begin to see the component.
+    pub near: f32,
+    /// Where they cease to.
+    pub far: f32,
+    /// Width of a pixel at distance 1 by which the accepted error of a hit is measured.
+    pub footprint: f32,
+    /// Limit of the steps of a ray through one copy.
+    pub copy_steps: u32,
 }

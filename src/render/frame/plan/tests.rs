@@ -5,6 +5,10 @@ use super::*;
 /// The light of a scene without lights.
 const LIGHT: PixelLight = PixelLight { lights: 2, shadows: 0.0 };
 
+fn shown(view: &SampleView, size: [u32; 2]) -> PlannedView<'_> {
+    PlannedView { view, size, traced: TracedParts::default() }
+}
+
 #[test]
 fn parts_cover_every_pixel_once_and_stay_small() {
     let rect = Rect { origin: [16, 8], end: [301, 177] };
@@ -37,8 +41,9 @@ fn what_is_traced_again_has_more_relaunches_of_the_components_that_are_meant() {
     let camera = flat.default_camera(&[], 1.0);
     let slow = EvaluationCost { straight: false, iterations: MAX_ITERATIONS / 2, leaves: 8.0 };
     let evaluations = vec![slow; flat.components.len()];
-    let plan = plan(&flat, &camera.into(), [64, 64], &evaluations, LIGHT, &CostModel::new(true), Room::UNLIMITED)
-        .expect("room for all");
+    let plan =
+        plan(&flat, shown(&camera.into(), [64, 64]), &evaluations, LIGHT, &CostModel::new(true), Room::UNLIMITED)
+            .expect("room for all");
     let of = |dispatches: &[Dispatch], pass: Pass| dispatches.iter().filter(|dispatch| dispatch.pass == pass).count();
     let again = plan.again(|component| component == 2, 8);
     let meant: Vec<Dispatch> =
@@ -63,7 +68,8 @@ fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
     // A dispatch has room for only a few steps of the third component.
     let mut evaluations = vec![cheap; flat.components.len()];
     evaluations[2].iterations = MAX_ITERATIONS / 4;
-    let planned = |room| plan(&flat, &camera.into(), [640, 480], &evaluations, LIGHT, &CostModel::new(true), room);
+    let planned =
+        |room| plan(&flat, shown(&camera.into(), [640, 480]), &evaluations, LIGHT, &CostModel::new(true), room);
     let whole = planned(Room::UNLIMITED).expect("room for all");
     let (count, subtiles) = (whole.dispatches.len(), u64::from(whole.subtiles));
     assert!(count > 1_000, "{count}");
@@ -93,8 +99,7 @@ fn only_pictures_with_shadows_have_dispatches_for_them_two_for_each_part() {
         let model = CostModel::new(true);
         let plan = plan(
             &flat,
-            &camera.into(),
-            [320, 200],
+            shown(&camera.into(), [320, 200]),
             &evaluations,
             PixelLight { shadows, ..LIGHT },
             &model,
