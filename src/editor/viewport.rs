@@ -65,6 +65,7 @@ impl Panel for Viewport {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Viewport"));
         self.navigate(state, ui, &response);
         self.paint(state, ui, &response);
+        state.view.copy_path = self.hover.copy_path(state.session.document.scene());
         shading_bar::show(state, ui);
         transform_bar::show(state, ui);
         self.modal.settle(ui);
