@@ -1,7 +1,7 @@
 # Isolith. `make run` and `make test` are all that a fresh Debian or Ubuntu machine with Rust needs.
 
 SHELL := /bin/bash
-.PHONY: help run test nightly window lint bench gpu-static golden scenes setup
+.PHONY: help run test nightly window pictures lint bench gpu-static golden scenes setup
 .DEFAULT_GOAL := help
 
 # Vulkan drivers want a private folder and complain where there is none.
@@ -35,6 +35,13 @@ window: setup ## Drive the program in a window of its own at one frame a second,
 	@bash -euo pipefail -c "$$WINDOW_TOOLS"
 	cargo build
 	tests/window.sh target/debug/isolith target/window
+
+# A screen is 1280x800, 1920x1080 or 2560x1440; the pictures are in target/pictures.
+pictures: setup ## Take pictures of all panels in both themes, and of a robot built by hand, to be looked at
+	@bash -euo pipefail -c "$$WINDOW_TOOLS"
+	cargo build
+	tests/pictures.sh target/debug/isolith target/pictures
+	tests/character.sh target/debug/isolith target/pictures
 
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy

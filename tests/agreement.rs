@@ -135,7 +135,7 @@ fn long_rows(random: &mut Random) -> Scene {
     for i in 0..45 {
         let kind = random.pick(&[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus]);
         let node = object(kind.default_shape()).at(random.point(2.0)).scaled(DVec3::splat(0.5));
-        add(&mut scene, Some(parent), if i < 30 { node } else { node.negative() });
+        add(&mut scene, Some(parent), if i < 30 { node } else { node.subtracted() });
     }
     scene
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
+mod baked;
 mod exact;
 mod making;
 mod shapes;

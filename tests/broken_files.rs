@@ -345,7 +345,7 @@ const CASES: &[Case] = &[
         r#""name": "Duck""#,
         r#""name": "Duck", "negative": true"#,
         "Duck #4",
-        "nodes[3].negative",
+        "nodes[3].operation",
         "only objects and groups",
     ),
 ];

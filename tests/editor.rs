@@ -29,6 +29,8 @@ mod preferences;
 mod rendering;
 mod saving;
 mod scale;
+mod sharing;
+mod splitting;
 mod timeline;
 mod transforms;
 mod views;

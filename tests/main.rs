@@ -23,6 +23,7 @@ mod files;
 mod golden;
 mod gpu;
 mod heightmaps;
+mod latency;
 mod lights;
 mod march_settings;
 mod materials;

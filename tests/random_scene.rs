@@ -5,7 +5,7 @@ use isolith::geometry::Transform;
 use isolith::scene::{
     Blend, BlendKernel, BlendOverride, CameraNode, DisplaySettings, Environment, Falloff, Group, Light, LightKind,
     Limits, Material, MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object,
-    Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, ViewTransform, limits,
+    Operation, Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, ViewTransform, limits,
 };
 
 use crate::contract::samples::image;
@@ -232,7 +232,10 @@ impl Random {
         node.transform = self.transform();
         node.visible = !self.once_in(5);
         node.locked = self.once_in(5);
-        node.negative = node.has_field() && self.once_in(4);
+        if node.has_field() && self.once_in(4) {
+            // Not by one more random number, which would change all that follow.
+            node.operation = if node.locked { Operation::Intersect } else { Operation::Subtract };
+        }
         if node.has_field() && self.once_in(3) {
             let slot = |r: &mut Self| ModifierSlot { enabled: !r.once_in(4), modifier: r.modifier() };
             node.modifiers = (0..=self.below(3)).map(|_| slot(self)).collect();

@@ -3,6 +3,7 @@
 
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
 use isolith::document::{Document, Edit};
 use isolith::field::debug_view::{DepthRange, ViewMode};
 use isolith::field::{FlatScene, Flattener, GBuffer, flatten};
@@ -53,6 +54,41 @@ fn a_device_lost_in_the_middle_of_a_frame_is_an_error_and_the_next_one_draws_the
         assert!(gpu.is_lost());
         let (_, mut renderer) = own_renderer();
         assert!(draw(&mut renderer, &bench_scene).expect("a picture") == whole, "after {batches} batches");
+    }
+}
+
+/// Frames of a script after each of which the device is destroyed once: `ISOLITH_DEVICE_LOSSES`, or a few.
+fn losses() -> usize {
+    std::env::var("ISOLITH_DEVICE_LOSSES").ok().and_then(|text| text.parse().ok()).unwrap_or(3)
+}
+
+#[test]
+fn a_device_destroyed_at_each_frame_of_a_script_costs_that_frame_and_no_more() {
+    const SMALL: [u32; 2] = [48, 48];
+    let BenchScene { flat, meshes, .. } = &bench_scene();
+    // A camera that runs around the pawn.
+    let camera = |frame: usize| {
+        let (sin, cos) = (frame as f64 * 0.37).sin_cos();
+        Camera::looking_at(DVec3::new(3.0 * sin, 1.6, 3.0 * cos), DVec3::new(0.0, 0.4, 0.0), 0.6)
+    };
+    let draw = |renderer: &mut Renderer, frame: usize| {
+        renderer.render(flat, meshes, &camera(frame), SMALL, &mut |_| true).map(|(buffers, _)| buffers)
+    };
+    let (_, mut undisturbed) = own_renderer();
+    for frame in 0..losses() {
+        let whole = draw(&mut undisturbed, frame).expect("a picture");
+        let (gpu, mut renderer) = own_renderer();
+        let none = OverlaySettings::default();
+        let mut begun = renderer.begin(Slot::Full, flat, meshes, &camera(frame), SMALL, none).expect("a frame");
+        for _ in 0..frame % 5 {
+            if !begun.is_done() {
+                renderer.advance(&mut begun, Duration::ZERO).expect("a batch");
+            }
+        }
+        gpu.device.destroy();
+        assert!(draw(&mut renderer, frame).is_err() && gpu.is_lost(), "frame {frame}");
+        let (_, mut next) = own_renderer();
+        assert!(draw(&mut next, frame).expect("a picture") == whole, "frame {frame}");
     }
 }
 

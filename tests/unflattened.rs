@@ -9,7 +9,7 @@ use isolith::field::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::geometry::Ray;
 use isolith::scene::{
-    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator,
+    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operation, Operator,
     RadiusUnit, Scene, Shape, ShapeKind,
 };
 
@@ -273,7 +273,7 @@ fn blended() -> Scene {
     let parent = scene.insert(None, 0, Node::new("Group", NodeKind::Group(group)).rotated(turn)).unwrap();
     let object = |shape| Node::new("Object", NodeKind::Object(Object { shape, material: MaterialId(1) }));
     let ball = |x: f64| object(Shape::Sphere { radius: 0.5 }).at(DVec3::X * x);
-    let cut = object(Shape::Box { size: [0.4, 2.0, 0.4], rounding: 0.0 }).at(DVec3::X * 0.4).negative();
+    let cut = object(Shape::Box { size: [0.4, 2.0, 0.4], rounding: 0.0 }).at(DVec3::X * 0.4).subtracted();
     for node in [ball(-0.4), ball(0.4), cut] {
         scene.insert(Some(parent), usize::MAX, node).unwrap();
     }
@@ -294,7 +294,7 @@ fn whatever_flattening_could_forget_is_told() {
                 group.blend.kernel = BlendKernel::Quadratic;
             }
         }),
-        ("what is cut away", |node| node.negative = false),
+        ("what is cut away", |node| node.operation = Operation::Add),
         ("who keeps apart", |node| node.apart = if node.id.0 == 3 { vec![NodeId(2)] } else { vec![] }),
         ("a modifier", |node| {
             if node.id.0 == 2 {

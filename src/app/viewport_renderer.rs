@@ -124,8 +124,31 @@ impl ViewportRenderer {
         })
     }
 
+    pub fn gpu(&self) -> &Gpu {
+        self.renderers.plain.gpu()
+    }
+
+    /// Gives its textures back.
+    pub fn close(self) {
+        let mut renderer = self.state.renderer.write();
+        for (id, _) in self.textures.into_iter().flatten() {
+            renderer.free_texture(&id);
+        }
+    }
+
     pub fn is_lost(&self) -> bool {
         self.renderers.plain.gpu().is_lost()
+    }
+
+    /// The current picture is final until the request changes.
+    pub fn stop_drawing(&mut self) {
+        (self.in_flight, self.waiting) = (None, false);
+        self.samples.stop();
+    }
+
+    /// Whether the picture is complete, but for further samples.
+    pub fn is_complete(&self) -> bool {
+        self.in_flight.is_none() && !self.waiting && !self.navigating
     }
 
     /// The picture to show now.
@@ -149,18 +172,21 @@ impl ViewportRenderer {
     }
 
     /// Advances the picture toward the editor's request, in bounded time.
-    pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
+    ///
+    /// A picture that `may_refine` not stays coarse until the next call.
+    pub fn update(
+        &mut self,
+        editor: &mut Editor,
+        view: ViewSettings,
+        may_refine: bool,
+        ctx: &egui::Context,
+    ) -> Result<(), RenderError> {
         self.renderers.plain.gpu().check()?;
         self.painting = self.painting_since.take().map_or(self.painting, |since| since.elapsed());
-        if editor.take_stop_drawing() {
-            // The current picture is final until the request changes.
-            (self.in_flight, self.waiting) = (None, false);
-            self.samples.stop();
-        }
-        let ViewSettings { navigating, samples: wanted, .. } = editor.view();
+        let ViewSettings { navigating, samples: wanted, .. } = view;
         self.wanted = wanted;
         // Not inputs of the picture: the end of a drag and the number of samples change nothing in it.
-        let view = ViewSettings { navigating: false, samples: 0, ..editor.view() };
+        let view = ViewSettings { navigating: false, samples: 0, ..view };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
         let flat = self.shaded(editor.flat(), view.shading);
         let meshes = flat.known_meshes(editor.meshes());
@@ -179,6 +205,9 @@ impl ViewportRenderer {
                 self.start(&request, &meshes, is_other)?;
             }
             self.request = Some(request);
+        }
+        if !may_refine {
+            return Ok(());
         }
         if let Some((frame, started)) = &mut self.in_flight {
             let time = slice(self.painting);

@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use eframe::egui_wgpu::RenderState;
 use egui::{Vec2, vec2};
 
 use super::shared_app::SharedApp;
 use super::viewport_renderer::ViewportRenderer;
-use crate::editor::{Editor, Message};
+use crate::editor::{Editor, Message, Picture, VIEWS, ViewSettings};
 use crate::render::{Gpu, RenderError};
 
 /// Minimum size of the window, in points.
@@ -15,6 +16,9 @@ pub(super) const SMALLEST: Vec2 = vec2(800.0, 500.0);
 /// The window's content, run by eframe.
 pub(super) struct Window {
     viewport: ViewportRenderer,
+    /// Those of the viewports beside the main one, while they are shown.
+    beside: [Option<ViewportRenderer>; VIEWS - 1],
+    state: RenderState,
     shared: SharedApp,
     /// Whether the window has been painted once. The first picture comes later, because a driver may compile for
     /// seconds.
@@ -36,11 +40,54 @@ impl Window {
         crate::render::driver::loop_iterations(&gpu)?;
         let delay = std::env::var(FRAME_DELAY).ok().and_then(|text| text.parse().ok()).map(Duration::from_millis);
         Ok(Self {
-            viewport: ViewportRenderer::new(gpu, state)?,
+            viewport: ViewportRenderer::new(gpu, state.clone())?,
+            beside: Default::default(),
+            state,
             shared,
             is_open: false,
             delay: delay.unwrap_or_default(),
         })
+    }
+}
+
+impl Window {
+    /// Advances the pictures of all viewports: first that of the active one, and the others while it rests.
+    fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
+        let stops = editor.take_stop_drawing();
+        let active = editor.active_view();
+        let mut views: Vec<(usize, ViewSettings)> = vec![(active, editor.view())];
+        views.extend(editor.views_beside());
+        let mut may_refine = true;
+        for (index, view) in &views {
+            let renderer = match index.checked_sub(1).map(|beside| &mut self.beside[beside]) {
+                None => &mut self.viewport,
+                Some(Some(renderer)) => renderer,
+                Some(empty) => {
+                    let gpu = self.viewport.gpu().clone();
+                    empty.insert(ViewportRenderer::new(gpu, self.state.clone())?)
+                }
+            };
+            if stops {
+                renderer.stop_drawing();
+            }
+            renderer.update(editor, *view, may_refine, ctx)?;
+            may_refine &= renderer.is_complete();
+        }
+        for (beside, renderer) in self.beside.iter_mut().enumerate() {
+            let is_shown = views.iter().any(|(index, _)| *index == beside + 1);
+            if let Some(closed) = renderer.take_if(|_| !is_shown) {
+                closed.close();
+            }
+        }
+        Ok(())
+    }
+
+    /// The pictures of the viewports beside the main one.
+    fn pictures_beside(&self) -> Vec<Picture> {
+        let picture = |renderer: &Option<ViewportRenderer>| {
+            renderer.as_ref().map_or_else(Picture::default, ViewportRenderer::picture)
+        };
+        self.beside.iter().map(picture).collect()
     }
 }
 
@@ -77,15 +124,17 @@ impl eframe::App for Window {
         if !self.delay.is_zero() && ui.ctx().current_pass_index() == 0 {
             std::thread::sleep(self.delay);
         }
-        let mut slot = self.shared.editor.borrow_mut();
+        let shared = self.shared.clone();
+        let mut slot = shared.editor.borrow_mut();
         let editor = &mut *slot;
+        editor.set_pictures_beside(self.pictures_beside());
         editor.show(ui, &self.viewport.picture());
         if !std::mem::replace(&mut self.is_open, true) {
             fit_to_screen(ui.ctx());
             ui.ctx().request_repaint();
             return;
         }
-        match self.viewport.update(editor, ui.ctx()) {
+        match self.update(editor, ui.ctx()) {
             Ok(()) => {}
             // The output of this frame cannot be painted: discard it and repeat the pass, which paints nothing.
             Err(_) if self.viewport.is_lost() => ui.ctx().request_discard("the device is lost"),

@@ -40,8 +40,14 @@ pub enum BrickError {
         voxels: u64,
     },
     /// There is nothing to measure.
-    #[error("has no triangle with an area")]
+    #[error("has nothing to measure: no triangle with an area, no solid")]
     Empty,
+    /// It reaches without end.
+    #[error("has no end, so that no number of voxels holds it")]
+    Endless,
+    /// It cannot be measured, for this reason.
+    #[error("{0}")]
+    Refused(String),
     /// The size of the voxels is not one.
     #[error("needs voxels whose size is a positive number")]
     Voxel,

@@ -27,7 +27,7 @@ mod levels;
 mod looks;
 mod placeholder;
 
-pub use bake::bake;
+pub use bake::{BakeProgress, BakedField, bake, bake_field};
 pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
 pub use digest::{ContentHash, ContentKey};
 pub use encode::{BrickContent, BrickError, encode};

@@ -219,7 +219,7 @@ fn bench_scenes(arguments: &BenchArguments) -> Result<Vec<BenchScene>, Failure> 
 /// The scene with its models as fields.
 fn with_fields(scene: &Scene, library: &mut MeshLibrary) -> Scene {
     let mut fields = ModelFields::new(library.folder().map(Path::to_path_buf));
-    fields.make_all(&scene.model_requests(), library, &Task::new("Making bricks"));
+    fields.make_all(scene, library, &Task::new("Making bricks"));
     fields.filled(scene).into_owned()
 }
 

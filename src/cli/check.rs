@@ -15,7 +15,7 @@ use crate::scene::limits::{
     MAX_ATTACHMENT_BYTES, MAX_DEPTH, MAX_KEYS, MAX_MATERIALS, MAX_NODES, MAX_SCENE_PIXELS, MAX_TRACKS,
 };
 use crate::scene::{Node, NodeId, NodeKind, Object, Param, ParamPath, ParamValue, Scene, Shape, text_profile};
-use crate::session::pose_of;
+use crate::session::{library_of, pose_of};
 
 /// Arguments of `isolith check`.
 #[derive(Debug, clap::Args)]
@@ -109,7 +109,7 @@ fn read(path: &Path, with_params: bool) -> Result<Report, Failure> {
     let flattened = flattened.map_err(|error| Failure::beyond_limit(&shown(path), &error))?;
     let (flat, usages) = flattened.ok_or(Failure::Canceled)?;
     let mut report = Report::new(&scene, &flat, &usages);
-    let mut library = MeshLibrary::new(folder(path));
+    let mut library = library_of(&scene, folder(path));
     let (meshes, missing) = flat.load_meshes(&mut library);
     report.clips = clips(&scene, &flat, &meshes);
     report.warnings.extend(missing.into_iter().map(CheckWarning::from));

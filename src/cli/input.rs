@@ -41,7 +41,7 @@ pub fn folder(path: &Path) -> Option<PathBuf> {
 pub fn refuse_unknown_word(path: &Path) -> Result<(), Failure> {
     let is_word = path.components().count() == 1 && path.extension().is_none() && !path.exists();
     if is_word || is_standard(path) {
-        let commands = "render, check, bench, shader, schema, adapters";
+        let commands = "render, check, bench, pack, unpack, shader, schema, adapters";
         let word = path.display();
         return Err(Failure::Usage(format!("\"{word}\" is neither a file nor a command; the commands are {commands}")));
     }

@@ -10,6 +10,7 @@
 //! | `adapters` | `isolith adapters`, and the option that chooses one |
 //! | `input` | scene files, standard input |
 //! | `text` | printing |
+//! | `pack` | `isolith pack`, `isolith unpack`: models within a scene |
 //! | `film` | options for samples, exposure and view transform |
 //! | `log` | spans and events, enabled by `RUST_LOG` |
 //! | `runtime_folder` | the folder `XDG_RUNTIME_DIR` that drivers need |
@@ -22,6 +23,7 @@ mod failure;
 mod film;
 mod input;
 mod log;
+mod pack;
 mod progress;
 mod render;
 mod runtime_folder;
@@ -75,6 +77,12 @@ enum CliCommand {
     /// Measure how long scenes take and how exact they are, by every method
     #[command(after_help = EXIT_CODES)]
     Bench(bench::BenchArguments),
+    /// Write a scene with the files of its models, so that one file is all of it
+    #[command(after_help = EXIT_CODES)]
+    Pack(pack::PackArguments),
+    /// Write a scene without the files that it packs, and these beside it
+    #[command(after_help = EXIT_CODES)]
+    Unpack(pack::UnpackArguments),
     /// Print the WGSL source of a pass as a graphics device gets it
     #[command(after_help = EXIT_CODES)]
     Shader(shader::ShaderArguments),
@@ -117,6 +125,8 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(CliCommand::Render(arguments)) => render::render(&arguments),
         Some(CliCommand::Check(arguments)) => check::check(&arguments),
         Some(CliCommand::Bench(arguments)) => bench::bench(&arguments),
+        Some(CliCommand::Pack(arguments)) => pack::pack_scene(&arguments),
+        Some(CliCommand::Unpack(arguments)) => pack::unpack_scene(&arguments),
         Some(CliCommand::Shader(arguments)) => shader::shader(&arguments),
         Some(CliCommand::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
         Some(CliCommand::Gallery { folder }) => write_gallery(&folder),

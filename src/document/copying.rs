@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+use super::links::NewLinks;
 use super::placement::kept_in_place;
 use super::structure::{FreeNames, move_to, tops};
 use isolith_scene::{
@@ -57,6 +58,7 @@ pub(super) fn merge(
     let mut next = Scene::clone(scene);
     let [material_of, new_materials] = merge_materials(&mut next, from)?;
     let mut names = FreeNames::new(scene);
+    let mut links = NewLinks::new(scene);
     let first = next.next_id();
     let new_id: HashMap<NodeId, NodeId> =
         from.nodes().iter().zip(first..).map(|(node, id)| (node.id, NodeId(id))).collect();
@@ -69,6 +71,7 @@ pub(super) fn merge(
             node.id = new_id[&node.id];
             node.parent = node.parent.and_then(|id| new_id.get(&id).copied());
             node.rename_references(|id| new_id.get(&id).copied());
+            node.linked = node.linked.map(|link| links.of(link));
             node.rename_materials(|id| material_of.get(&id).copied());
         }
         subtree[0].name = names.free(parent, &subtree[0].name);

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::change::Change;
-use super::{copying, keys, structure};
+use super::{copying, keys, links, structure};
 use isolith_scene::{
-    Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, ParamPath,
-    ParamValue, Scene, SceneError, Timeline, Track, check,
+    Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, PackedFiles,
+    ParamPath, ParamValue, Scene, SceneError, Timeline, Track, check,
 };
 
 /// A change to a scene. Values are checked against [`isolith_scene::limits`].
@@ -39,8 +39,10 @@ pub enum Edit {
         /// Counted from 0.
         position: usize,
     },
-    /// Adds a copy of each node behind it, with new ids and a numbered name.
+    /// Adds a copy of each node behind it, with new ids and a numbered name. Copies of linked objects are not linked.
     Duplicate(Vec<NodeId>),
+    /// The same, and each copied object shares shape and material with its original from then on.
+    DuplicateLinked(Vec<NodeId>),
     /// Puts nodes into a new group, at the position of the first of them. They keep their place in the world as with
     /// [`Edit::Move`].
     Group {
@@ -83,6 +85,8 @@ pub enum Edit {
     SetEnvironment(Environment),
     /// Replaces the display settings.
     SetDisplay(DisplaySettings),
+    /// Replaces the files that travel within the scene.
+    SetPacked(PackedFiles),
     /// Changes one parameter of a node, a material, the environment or the display.
     SetParam {
         /// The path of the parameter.
@@ -108,12 +112,15 @@ impl Edit {
             Self::Replace(node) => {
                 let node = check::settled(node);
                 let old = scene.node(node.id).ok_or(SceneError::NoNode(node.id))?;
-                let node = Node { parent: old.parent, ..node };
+                let mut node = Node { parent: old.parent, ..node };
+                if !matches!(node.kind, NodeKind::Object(_)) {
+                    node.linked = None;
+                }
                 if **old == node {
                     return Ok(Change::NONE);
                 }
                 check_node(&node)?;
-                Arc::make_mut(scene).replace(node)?;
+                links::replace(scene, node)?;
                 Ok(Change::VALUE)
             }
             Self::Insert { parent, position, node } => {
@@ -127,7 +134,10 @@ impl Edit {
                 structure::move_to(scene, &ids, parent, position).map(|()| Change::VALUE)
             }
             Self::Duplicate(ids) => {
-                structure::duplicate(scene, &ids).map(|added| Change { changed: !added.is_empty(), added })
+                structure::duplicate(scene, &ids, false).map(|added| Change { changed: !added.is_empty(), added })
+            }
+            Self::DuplicateLinked(ids) => {
+                structure::duplicate(scene, &ids, true).map(|added| Change { changed: !added.is_empty(), added })
             }
             Self::Group { ids, group } => enclose(scene, &ids, Node::new("Group", NodeKind::Group(group))),
             Self::Instance { ids, node } => enclose(scene, &ids, node),
@@ -149,6 +159,7 @@ impl Edit {
             Self::SetDisplay(display) => set_display(scene, display),
             Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
             Self::SetTimeline(timeline) => set_timeline(scene, timeline),
+            Self::SetPacked(packed) => set_packed(scene, packed),
             Self::SetKeys(keys) => keys::set_keys(scene, keys),
             Self::RemoveKeys(keys) => keys::remove_keys(scene, &keys),
             Self::SetTracks(tracks) => keys::set_tracks(scene, tracks),
@@ -181,6 +192,7 @@ impl Edit {
             Self::Remove(ids) => format!("Delete {}", names(scene, ids)),
             Self::Move { ids, .. } => format!("Reorder {}", names(scene, ids)),
             Self::Duplicate(ids) => format!("Duplicate {}", names(scene, ids)),
+            Self::DuplicateLinked(ids) => format!("Duplicate {} linked", names(scene, ids)),
             Self::Group { ids, .. } => format!("Group {}", names(scene, ids)),
             Self::Instance { ids, .. } => format!("Instance {}", names(scene, ids)),
             Self::Merge { from, .. } => {
@@ -198,6 +210,8 @@ impl Edit {
                 Err(_) => format!("Change {path}"),
             },
             Self::SetTimeline(_) => "Change timeline".into(),
+            Self::SetPacked(packed) if packed.is_empty() => "Unpack files".into(),
+            Self::SetPacked(_) => "Pack files".into(),
             Self::SetKeys(keys) => format!("Insert {}", counted(keys.len(), "key")),
             Self::RemoveKeys(keys) => format!("Delete {}", counted(keys.len(), "key")),
             Self::SetTracks(_) => "Move keys".into(),
@@ -223,8 +237,8 @@ fn replace_label(old: &Node, new: &Node) -> String {
         format!("{} {name}", if new.visible { "Show" } else { "Hide" })
     } else if old.locked != new.locked {
         format!("{} {name}", if new.locked { "Lock" } else { "Unlock" })
-    } else if old.negative != new.negative {
-        format!("{} {name}", if new.negative { "Subtract" } else { "Join" })
+    } else if old.operation != new.operation {
+        format!("{} {name}", new.operation.label())
     } else if old.transform != new.transform {
         format!("Place {name}")
     } else {
@@ -265,6 +279,14 @@ fn set_timeline(scene: &mut Arc<Scene>, timeline: Timeline) -> Result<Change, Sc
     }
     timeline.check().map_err(|f| f.into_error("timeline"))?;
     Arc::make_mut(scene).animation.timeline = timeline;
+    Ok(Change::VALUE)
+}
+
+fn set_packed(scene: &mut Arc<Scene>, packed: PackedFiles) -> Result<Change, SceneError> {
+    if scene.packed == packed {
+        return Ok(Change::NONE);
+    }
+    Arc::make_mut(scene).packed = packed;
     Ok(Change::VALUE)
 }
 

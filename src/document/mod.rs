@@ -27,6 +27,7 @@ mod history;
 mod keying;
 mod keys;
 mod layout;
+mod links;
 mod placement;
 mod preferences;
 mod recent;

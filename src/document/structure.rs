@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::links;
 use super::placement::kept_in_place;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeId, Scene, SceneError};
@@ -58,8 +59,20 @@ pub(super) fn group(scene: &mut Arc<Scene>, ids: &[NodeId], node: Node) -> Resul
 }
 
 /// Adds a copy behind each node. Returns the ids of the copies' top nodes.
-pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<NodeId>, SceneError> {
+pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId], is_linked: bool) -> Result<Vec<NodeId>, SceneError> {
     let tops = tops(scene, ids)?;
+    // On failure the scene is unchanged.
+    let mut next = Arc::clone(scene);
+    if is_linked {
+        links::link(&mut next, tops.iter().cloned().flatten())?;
+    }
+    let added = copy(&mut next, tops, is_linked)?;
+    *scene = next;
+    Ok(added)
+}
+
+/// Adds a copy of each of these subtrees behind it.
+fn copy(scene: &mut Arc<Scene>, tops: Vec<Range<usize>>, is_linked: bool) -> Result<Vec<NodeId>, SceneError> {
     let mut names = FreeNames::new(scene);
     let mut next_id = scene.next_id();
     let (mut nodes, mut added, mut done) = (Vec::with_capacity(scene.nodes().len()), Vec::new(), 0);
@@ -74,6 +87,7 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<No
             copy.id = NodeId(next_id);
             next_id += 1;
             new_id.insert(original.id, copy.id);
+            copy.linked = copy.linked.filter(|_| is_linked);
             copy.parent = copy.parent.map(|p| new_id.get(&p).copied().unwrap_or(p));
             if i == 0 {
                 copy.name = names.next(copy.parent, &copy.name);

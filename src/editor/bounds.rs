@@ -62,7 +62,7 @@ fn visit(scene: &Scene, index: usize, first: DAffine3, mut each: impl FnMut(&Nod
 
 fn has_size(node: &Node) -> bool {
     match &node.kind {
-        NodeKind::Object(object) => !node.negative && object.shape.bounds().is_finite(),
+        NodeKind::Object(object) => node.adds() && object.shape.bounds().is_finite(),
         NodeKind::Mesh(_) => true,
         NodeKind::Instancer(instancer) => !extent(&instancer.lattice).is_empty(),
         _ => false,

@@ -11,8 +11,6 @@ use super::{selection, theme};
 use isolith_geometry::Camera;
 use isolith_scene::{NodeId, NodeKind};
 
-/// Width divided by height of the frame: that of pictures of the usual size.
-const ASPECT: f64 = 16.0 / 9.0;
 /// Share of the viewport that the frame fills.
 const SHARE: f64 = 0.94;
 /// Where action and titles are safe on every screen, as shares of the frame (EBU R 95).
@@ -32,11 +30,16 @@ fn camera_of(state: &EditorState, id: NodeId) -> Option<Camera> {
 /// Looks through a camera, with its frame inside of the viewport.
 pub fn look_through(state: &mut EditorState, id: NodeId, focus: DVec3) {
     let Some(camera) = camera_of(state, id) else { return };
-    let share = SHARE * (state.view.aspect() / ASPECT).min(1.0);
+    let share = share(state);
     let mut view = state.view.navigation;
     show(&mut view, &camera, focus, share);
     state.view.navigation = view;
     state.view.through = Some(Through { camera: id, view, share });
+}
+
+/// Height of the frame as a share of the viewport's.
+fn share(state: &EditorState) -> f64 {
+    SHARE * (state.view.aspect() / state.view.frame_aspect).min(1.0)
 }
 
 fn show(view: &mut Navigation, camera: &Camera, focus: DVec3, share: f64) {
@@ -57,11 +60,12 @@ pub fn follow(state: &mut EditorState, widget: Id) {
         let tolerance = SAME * (1.0 + camera.position.length());
         let is_same =
             camera.position.distance(now.eye()) < tolerance && camera.rotation.dot(now.rotation).abs() > 1.0 - SAME;
-        if !is_same {
+        let share = share(state);
+        if !is_same || share != through.share {
             let mut view = now;
-            show(&mut view, &camera, now.target, through.share);
+            show(&mut view, &camera, now.target, share);
             state.view.navigation = view;
-            state.view.through = Some(Through { view, ..through });
+            state.view.through = Some(Through { view, share, ..through });
         }
         return;
     }
@@ -88,7 +92,7 @@ pub fn paint(state: &EditorState, painter: &Painter) {
     let Some(through) = state.view.through else { return };
     let whole = state.view.rect;
     let height = whole.height() * through.share as f32;
-    let frame = Rect::from_center_size(whole.center(), vec2(height * ASPECT as f32, height));
+    let frame = Rect::from_center_size(whole.center(), vec2(height * state.view.frame_aspect as f32, height));
     let dim = Color32::from_black_alpha(110);
     let outside = [
         whole.with_max_y(frame.top()),

@@ -26,6 +26,7 @@ impl Editor {
     pub(super) fn show_dialogs(&mut self, ctx: &Context) {
         match self.dialogs.question.take() {
             Some(Question::Unsaved(next)) => self.ask_to_save(next, ctx),
+            Some(Question::Rendering(next)) => self.ask_to_stop_rendering(next, ctx),
             Some(Question::Replace(path, then)) => self.ask_to_replace(path, then, ctx),
             None => {}
         }
@@ -42,6 +43,23 @@ impl Editor {
             Some(DialogAnswer::Agree) => self.save(Some(next), ctx),
             Some(DialogAnswer::Discard) => self.perform(next, ctx),
             Some(DialogAnswer::Cancel) => {}
+        }
+    }
+
+    fn ask_to_stop_rendering(&mut self, next: Next, ctx: &Context) {
+        if !self.is_rendering() {
+            return self.unless_lost(next, ctx);
+        }
+        let name = self.rendering.output.clone();
+        let name = Path::new(&name).file_name().map_or(name.clone(), |name| name.to_string_lossy().into_owned());
+        let text = "It is not complete yet. Frames that are complete stay.";
+        match question(ctx, ("Stop rendering", &name, text), None, "Stop") {
+            None => self.dialogs.question = Some(Question::Rendering(next)),
+            Some(DialogAnswer::Agree) => {
+                self.rendering.running = None;
+                self.unless_lost(next, ctx);
+            }
+            Some(_) => {}
         }
     }
 

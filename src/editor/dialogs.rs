@@ -127,6 +127,8 @@ pub struct PathField {
 pub enum Question {
     /// The document has unsaved changes.
     Unsaved(Next),
+    /// Pictures are being rendered.
+    Rendering(Next),
     /// A file of this name exists.
     Replace(PathBuf, Option<Next>),
 }

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use egui::{Id, Ui, Vec2, vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 
+use super::dock_split::split;
 use super::dock_tabs::{self, DockTabs, GAP, LEAST, is_fixed};
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
@@ -61,7 +62,10 @@ impl Dock {
         }
         for (id, index) in panes(&tree) {
             let panel = self.panels[index].as_ref();
-            tree.set_visible(id, is_fixed(panel) || !layout.closed.iter().any(|closed| closed == panel.id()));
+            // A layout of an earlier program lacks it.
+            let is_extra = matches!(panel.place(), PanelPlace::Beside(_)) && !found.contains(&index);
+            let is_closed = is_extra || layout.closed.iter().any(|closed| closed == panel.id());
+            tree.set_visible(id, is_fixed(panel) || !is_closed);
         }
         for (id, _) in tree.tiles.iter().filter(|(_, tile)| tile.is_container()) {
             sizes.entry(*id).or_insert(0.0);
@@ -95,13 +99,20 @@ impl Dock {
             |place| matches!(place, PanelPlace::Right(..)),
             extent(0, |place| matches!(place, PanelPlace::Right(..))),
         );
-        let middle = [side, tabs(|place| place == PanelPlace::Center, 0.0), right].into_iter().flatten().collect();
+        let beside = tabs(
+            |place| matches!(place, PanelPlace::Beside(_)),
+            extent(0, |place| matches!(place, PanelPlace::Beside(_))),
+        );
+        let center = tabs(|place| place == PanelPlace::Center, 0.0);
+        let middle = [side, center, beside, right].into_iter().flatten().collect();
+        let extra = self.panels.iter().filter(|panel| matches!(panel.place(), PanelPlace::Beside(_)));
+        let closed = extra.map(|panel| panel.id().to_owned()).collect();
         let lower = tabs(
             |place| matches!(place, PanelPlace::Lower(_)),
             extent(1, |place| matches!(place, PanelPlace::Lower(_))),
         );
         let rows = [Some(DockedPart { size: 0.0, part: Docked::Row(middle) }), lower];
-        PanelLayout { root: Docked::Column(rows.into_iter().flatten().collect()), closed: Vec::new() }
+        PanelLayout { root: Docked::Column(rows.into_iter().flatten().collect()), closed }
     }
 
     /// Makes the tiles of a part; `None` for one without known panels.
@@ -206,6 +217,16 @@ impl Dock {
             self.tree.make_active(|tile_id, _| tile_id == tile);
         }
         self.is_changed = true;
+    }
+
+    /// Shows 1, 2 or 4 viewports in the room of those that are shown.
+    pub fn split(&mut self, count: usize, room: Vec2) {
+        let center = self.panels.iter().find(|panel| is_fixed(panel.as_ref())).map(|panel| panel.id());
+        if let Some(center) = center {
+            let layout = split(&self.layout(), center, count, room);
+            self.arrange(Some(&layout));
+            self.is_changed = true;
+        }
     }
 
     /// Shows the panels.
@@ -397,7 +418,7 @@ fn place_missing(tree: &mut Tree<usize>, panels: &[Box<dyn Panel>], index: usize
 /// The size of a panel before the artist has set it, in points.
 fn usual_size(place: PanelPlace) -> Vec2 {
     match place {
-        PanelPlace::Left(width, _) | PanelPlace::Right(width, _) => vec2(width, USUAL.y),
+        PanelPlace::Left(width, _) | PanelPlace::Right(width, _) | PanelPlace::Beside(width) => vec2(width, USUAL.y),
         PanelPlace::BelowLeft(height) | PanelPlace::Lower(height) => vec2(USUAL.x, height),
         PanelPlace::Top | PanelPlace::Bottom | PanelPlace::Center => USUAL,
     }

@@ -65,11 +65,12 @@ impl Behavior<usize> for DockTabs<'_> {
         let panel = &mut self.panels[*pane];
         let whole = ui.max_rect();
         let margin = match panel.place() {
-            PanelPlace::Center => Margin::ZERO,
+            PanelPlace::Center | PanelPlace::Beside(_) => Margin::ZERO,
             PanelPlace::Lower(_) => Margin::symmetric(8, 5),
             _ => Margin::same(8),
         };
-        let fill = if panel.place() == PanelPlace::Center { theme::LINE } else { theme::PANEL };
+        let is_view = matches!(panel.place(), PanelPlace::Center | PanelPlace::Beside(_));
+        let fill = if is_view { theme::LINE } else { theme::PANEL };
         ui.painter().rect_filled(whole, 0.0, fill);
         // The panel's id, not the place, identifies its widgets: it can be moved while it is in use.
         let builder = UiBuilder::new().scope_id(Id::unique(panel.id())).max_rect(whole - margin);

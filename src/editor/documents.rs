@@ -25,6 +25,7 @@ impl Editor {
         match intent {
             Intent::New => self.unless_lost(Next::New, ctx),
             Intent::Choose => self.perform(Next::Choose, ctx),
+            Intent::Quit if self.is_rendering() => self.dialogs.question = Some(Question::Rendering(Next::Quit)),
             Intent::Quit => self.unless_lost(Next::Quit, ctx),
             Intent::Open(path) => self.open_file(&path, false),
             Intent::Template(index) => {
@@ -48,7 +49,7 @@ impl Editor {
     }
 
     /// Performs the step, with a question before a loss of work. A running save finishes first.
-    fn unless_lost(&mut self, next: Next, ctx: &Context) {
+    pub(super) fn unless_lost(&mut self, next: Next, ctx: &Context) {
         if let Some(saving) = &mut self.saving {
             saving.then = Some(next);
         } else if self.state.session.document.is_changed() {
@@ -166,7 +167,7 @@ impl Editor {
     /// Keeps the window open and asks if closing would lose work.
     pub(super) fn guard_closing(&mut self, ctx: &Context) {
         let requested = ctx.input(|i| i.viewport().close_requested());
-        let would_lose = self.state.session.document.is_changed() || self.saving.is_some();
+        let would_lose = self.state.session.document.is_changed() || self.saving.is_some() || self.is_rendering();
         if requested && !self.dialogs.closing && would_lose {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             if !self.has_dialog() {

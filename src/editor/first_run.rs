@@ -58,6 +58,24 @@ impl Editor {
         self.help.show(ctx);
     }
 
+    /// Closes one of the windows beside the scene; false if none is open. A picture that is being rendered keeps its own.
+    pub(super) fn close_foremost(&mut self) -> bool {
+        let is_rendering = self.is_rendering();
+        let windows = [
+            (&mut self.help.is_open, true),
+            (&mut self.state.show_history, true),
+            (&mut self.doctor.is_open, true),
+            (&mut self.rendering.is_open, !is_rendering),
+        ];
+        for (is_open, may_close) in windows {
+            if *is_open && may_close {
+                *is_open = false;
+                return true;
+            }
+        }
+        false
+    }
+
     /// Opens the help with its keys, or with what is new.
     pub(super) fn open_help_tab(&mut self, tab: HelpTab) {
         self.help.open(tab);

@@ -13,7 +13,7 @@ use isolith_document::extracted;
 use isolith_field::flatten;
 use isolith_field::scene_eval::SceneEvaluator;
 use isolith_geometry::{Aabb, Transform};
-use isolith_scene::{Node, NodeId, NodeKind, Scene};
+use isolith_scene::{Node, NodeId, NodeKind, Operation, Scene};
 
 /// Most ghosts at once.
 const MOST: usize = 8;
@@ -36,7 +36,7 @@ pub struct Ghosts {
     ghosts: Vec<(NodeId, Ghost)>,
 }
 
-/// Whether a node cuts, by its own setting or by the operator of its group.
+/// Whether a node cuts others, so that its own surface is not seen whole, by its own setting or by the operator of its group.
 fn cuts(scene: &Scene, node: &Node) -> bool {
     let by_operator = || {
         let parent = node.parent.and_then(|id| scene.node(id))?;
@@ -44,7 +44,7 @@ fn cuts(scene: &Scene, node: &Node) -> bool {
         let first = scene.children(Some(parent.id)).find(|child| child.visible && child.has_field())?;
         Some(group.operator.needs_first() && first.id != node.id)
     };
-    node.has_field() && (node.negative || by_operator().unwrap_or(false))
+    node.has_field() && (!node.adds() || by_operator().unwrap_or(false))
 }
 
 impl Ghosts {
@@ -100,7 +100,7 @@ fn ghost_of(state: &EditorState, scene: &Scene, id: NodeId) -> Option<Ghost> {
     let nodes = scene.nodes()[scene.subtree(index)].to_vec();
     let mut part = extracted(scene, &[id]).ok()?;
     let top = Node::clone(part.node(id)?);
-    let alone = Node { transform: Transform::IDENTITY, negative: false, visible: true, ..top };
+    let alone = Node { transform: Transform::IDENTITY, operation: Operation::Add, visible: true, ..top };
     part.replace(alone).ok()?;
     let (_, bounds) = bounds::oriented(scene, state.derived.library(), id)?;
     let bounds = bounds.expanded(MARGIN * bounds.half().max_element());

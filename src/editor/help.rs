@@ -42,7 +42,8 @@ pub enum HelpTab {
 /// State of the window.
 #[derive(Default)]
 pub struct Help {
-    is_open: bool,
+    /// Whether it is open.
+    pub is_open: bool,
     tab: HelpTab,
     page: usize,
     search: String,

@@ -3,15 +3,17 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_ARROW_SELECTOR_TOOL, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_GRID_ON,
-    ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_OPEN_IN_FULL, ICON_OPEN_WITH,
-    ICON_PLUMBING, ICON_ROTATE_RIGHT, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM,
-    ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+    ICON_ACCOUNT_TREE, ICON_ADJUST, ICON_ANIMATION, ICON_ARROW_SELECTOR_TOOL, ICON_DEPLOYED_CODE,
+    ICON_FILTER_CENTER_FOCUS, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN,
+    ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_MY_LOCATION, ICON_OPEN_IN_FULL,
+    ICON_OPEN_WITH, ICON_PLUMBING, ICON_PUBLIC, ICON_ROTATE_RIGHT, ICON_SCREENSHOT_MONITOR, ICON_STYLUS,
+    ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+    ICON_WORKSPACES,
 };
 
 pub use super::shape_icons::paint_shape;
 use super::theme;
-use super::transforms::kinds::{Tool, TransformKind};
+use super::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 use isolith_scene::{LightKind, Node, NodeKind, Operator};
 
 /// Paints the icon of a node: a shape's silhouette or a glyph, in the color of its kind.
@@ -30,7 +32,7 @@ pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {
 /// The color of a node's kind.
 pub fn node_color(node: &Node) -> Color32 {
     match node.kind {
-        _ if node.negative => *theme::NEGATIVE,
+        _ if !node.adds() => *theme::NEGATIVE,
         NodeKind::Object(_) => *theme::OBJECT,
         NodeKind::Group(_) | NodeKind::Instancer(_) => *theme::GROUP,
         NodeKind::Mesh(_) => *theme::MESH,
@@ -62,6 +64,26 @@ pub fn tool_icon(tool: Tool) -> MaterialIcon {
         Tool::Transform(TransformKind::Move) => ICON_OPEN_WITH,
         Tool::Transform(TransformKind::Rotate) => ICON_ROTATE_RIGHT,
         Tool::Transform(TransformKind::Scale) => ICON_OPEN_IN_FULL,
+    }
+}
+
+/// Icon of the axes of the tools.
+pub fn orientation_icon(orientation: Orientation) -> MaterialIcon {
+    match orientation {
+        Orientation::World => ICON_PUBLIC,
+        Orientation::Local => ICON_DEPLOYED_CODE,
+        Orientation::Parent => ICON_ACCOUNT_TREE,
+        Orientation::View => ICON_SCREENSHOT_MONITOR,
+    }
+}
+
+/// Icon of the point around which the tools turn and scale.
+pub fn pivot_icon(pivot: PivotPoint) -> MaterialIcon {
+    match pivot {
+        PivotPoint::Median => ICON_ADJUST,
+        PivotPoint::Individual => ICON_WORKSPACES,
+        PivotPoint::Active => ICON_MY_LOCATION,
+        PivotPoint::World => ICON_FILTER_CENTER_FOCUS,
     }
 }
 

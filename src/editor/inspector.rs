@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{RichText, ScrollArea, TextEdit, Ui, vec2};
-use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
+use egui_material_icons::icons::{ICON_LINK, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
 use super::edit_session::EditSession;
 use super::material_library::MaterialLibrary;
@@ -93,7 +93,9 @@ impl Inspector {
         if all.iter().all(|n| n.has_field())
             && let Some(mut edit) = MultiEdit::new(session, all.clone())
         {
-            inspector_blends::role(ui, &mut edit);
+            // In line with the rows of the cards below.
+            let inset = egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 0));
+            inset.show(ui, |ui| inspector_blends::role(ui, &mut edit));
         }
         self.transform(ui, session, &all);
         if let Some(mut edit) = MultiEdit::new(session, all.clone()) {
@@ -181,4 +183,22 @@ fn header(ui: &mut Ui, session: &mut EditSession, active: &Node, all: &[Arc<Node
         n => format!("{n} nodes selected; fields change all of them, “–” marks values that differ"),
     };
     ui.label(RichText::new(what).small().color(theme::WEAK));
+    links(ui, session, active);
+}
+
+/// With how many others the active object shares shape and material, and a button to end that.
+fn links(ui: &mut Ui, session: &mut EditSession, active: &Node) {
+    let Some(link) = active.linked else { return };
+    let others = session.document.scene().linked(link).count() - 1;
+    if others == 0 {
+        return;
+    }
+    ui.horizontal(|ui| {
+        let text = format!("{} Shape and material linked with {others} more", ICON_LINK.codepoint);
+        ui.label(RichText::new(text).small().color(theme::WARNING));
+        let help = "Takes the selection out of its set of linked objects";
+        if ui.small_button("Unlink").on_hover_text(help).clicked() {
+            selection::unlink(session);
+        }
+    });
 }

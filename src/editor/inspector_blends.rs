@@ -7,17 +7,9 @@ use super::numbers::NumberField;
 use super::{inspector_params, theme, widgets};
 use isolith_scene::{Group, Node, NodeKind, Operator, Part, RadiusUnit};
 
-/// Whether the node is added or subtracted, and how it blends; for objects and groups.
+/// Whether the node is added, subtracted or intersected, and how it blends; for objects and groups.
 pub fn role(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
-    let describe = |cuts| if cuts { "Cut away from what stands before it" } else { "Joined by its group's operator" };
-    edit.choice(
-        ui,
-        ("Operation", "What the node does to those before it in its group"),
-        &[false, true],
-        (|cuts| if cuts { "Subtract" } else { "Add" }, describe),
-        |n| Some(n.negative),
-        |n, cuts| n.negative = cuts,
-    );
+    inspector_params::row(ui, edit, Part::Node, "operation");
     if edit.common(|n| n.parent.is_none()) == Some(true) {
         return;
     }
@@ -80,6 +72,7 @@ pub fn group(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
             }
         }
         measures(ui, edit, operator);
+        row(ui, edit, "bake", |_| {});
     });
 }
 

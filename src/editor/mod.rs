@@ -34,6 +34,8 @@
 //! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `camera_view` | looking through a camera, its frame; bookmarks of views |
 //! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
+//! | `packing` | the files of models within the scene, and beside it again |
+//! | `side_views`, `side_viewport`, `dock_split` | several viewports: which one is active, its panel, layouts with them |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -66,6 +68,7 @@ mod conflict;
 mod dialog_views;
 mod dialogs;
 mod dock;
+mod dock_split;
 mod dock_tabs;
 mod doctor;
 mod doctor_view;
@@ -126,6 +129,7 @@ mod outliner;
 mod outliner_drop;
 mod outliner_filter;
 mod overlay;
+mod packing;
 mod palette;
 mod panel;
 mod panels;
@@ -151,6 +155,8 @@ mod shading_bar;
 mod shape_change;
 mod shape_icons;
 mod shell;
+mod side_viewport;
+mod side_views;
 mod slot_list;
 mod state;
 mod status;
@@ -177,5 +183,6 @@ pub use documents::new_document;
 pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 pub use root::Editor;
+pub use side_views::VIEWS;
 pub use state::Example;
 pub use view_state::{GridView, Picture, ViewSettings};

@@ -18,7 +18,7 @@ use super::state::{EditorState, Request};
 use super::{icons, instancing, theme, widgets};
 use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
-use isolith_scene::{Node, NodeId, NodeKind, Operator, Scene};
+use isolith_scene::{Node, NodeId, NodeKind, Operation, Operator, Scene};
 
 /// State of the outliner that persists between frames.
 pub struct Outliner {
@@ -401,20 +401,26 @@ impl Rows<'_> {
     fn name(&self, ui: &mut Ui, node: &Node, dim: bool) {
         let color = match () {
             () if dim => theme::FAINT,
-            () if node.negative => theme::NEGATIVE,
+            () if !node.adds() => theme::NEGATIVE,
             () => theme::TEXT,
         };
         let text = if node.name.is_empty() { RichText::new("(no name)").italics() } else { RichText::new(&node.name) };
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             // What follows the name stays visible when the name is truncated.
             let share = self.shares.get(&node.id);
-            let room = if node.negative { 16.0 } else { 0.0 } + if share.is_some() { 44.0 } else { 0.0 };
+            let room = if node.adds() { 0.0 } else { 16.0 } + if share.is_some() { 44.0 } else { 0.0 };
             ui.scope(|ui| {
                 ui.set_max_width((ui.available_width() - room).max(8.0));
                 ui.add(egui::Label::new(text.color(color)).selectable(false).truncate());
             });
-            if node.negative {
-                ui.label(RichText::new("−").color(theme::NEGATIVE).strong());
+            let sign = match node.operation {
+                Operation::Add => None,
+                Operation::Subtract => Some("−"),
+                Operation::Intersect => Some("∩"),
+            };
+            if let Some(sign) = sign {
+                let sign = ui.label(RichText::new(sign).color(theme::NEGATIVE).strong());
+                sign.on_hover_text(node.operation.label());
             }
             if let Some(share) = share {
                 let text = RichText::new(instancing::percent(*share)).small().color(theme::GROUP);

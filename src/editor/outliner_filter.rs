@@ -5,7 +5,7 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::ICON_FILTER_LIST;
 
 use super::{icons, theme};
-use isolith_scene::{Node, NodeKind, Operator};
+use isolith_scene::{Node, NodeKind, Operation, Operator};
 
 /// What the outliner lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,7 +72,7 @@ impl KindFilter {
             Self::Meshes => matches!(node.kind, NodeKind::Mesh(_)),
             Self::Lights => matches!(node.kind, NodeKind::Light(_)),
             Self::Cameras => matches!(node.kind, NodeKind::Camera(_)),
-            Self::Subtracted => node.negative,
+            Self::Subtracted => node.operation == Operation::Subtract,
             Self::Hidden => !node.visible,
             Self::Locked => node.locked,
         }

@@ -12,11 +12,11 @@ use isolith_scene::{Node, NodeId, NodeKind};
 /// Maximum number of selection boxes.
 const MOST_BOXES: usize = 64;
 
-/// Whether the renderer's outline is not enough: for the bounds of groups, and for subtracted or hidden nodes.
+/// Whether the renderer's outline is not enough: for the bounds of groups, and for subtracted, intersected or hidden nodes.
 fn needs_box(node: &Node) -> bool {
     match node.kind {
         NodeKind::Group(_) | NodeKind::Instancer(_) => true,
-        NodeKind::Object(_) | NodeKind::Mesh(_) => node.negative || !node.visible,
+        NodeKind::Object(_) | NodeKind::Mesh(_) => !node.adds() || !node.visible,
         NodeKind::Light(_) | NodeKind::Camera(_) => false,
     }
 }

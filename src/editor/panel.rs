@@ -19,6 +19,8 @@ pub enum PanelPlace {
     BelowLeft(f32),
     /// At the right, with default and minimum width in points.
     Right(f32, f32),
+    /// Beside the center, closed until it is asked for, with default width in points.
+    Beside(f32),
     /// The area that the other panels leave. Only one panel can take it.
     Center,
 }

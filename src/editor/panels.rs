@@ -5,6 +5,7 @@ use super::log_panel::Log;
 use super::materials::Materials;
 use super::outliner::Outliner;
 use super::panel::Panel;
+use super::side_viewport::SideViewport;
 use super::status::StatusBar;
 use super::timeline::TimelinePanel;
 use super::toolbar::Toolbar;
@@ -21,5 +22,8 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::<Materials>::default(),
         Box::<Inspector>::default(),
         Box::<Viewport>::default(),
+        Box::new(SideViewport::new(0)),
+        Box::new(SideViewport::new(1)),
+        Box::new(SideViewport::new(2)),
     ]
 }

@@ -120,7 +120,7 @@ fn uncovered(state: &EditorState, bounds: &Aabb, mut position: DVec3) -> DVec3 {
     let others: Vec<Aabb> = scene
         .nodes()
         .iter()
-        .filter(|node| node.visible && !node.negative && solid(&node.kind))
+        .filter(|node| node.visible && node.adds() && solid(&node.kind))
         .filter_map(|node| bounds::of_nodes(scene, state.derived.library(), &[node.id]))
         .collect();
     for _ in 0..MOST_MOVES {

@@ -70,6 +70,18 @@ pub fn select_same_material(state: &mut EditorState) {
     state.session.document.select(alike);
 }
 
+/// Selects what is linked with the selection.
+pub fn select_linked(state: &mut EditorState) {
+    let links: Vec<u64> = selection::linked_in_selection(&state.session).iter().filter_map(|n| n.linked).collect();
+    let scene = state.session.document.scene();
+    let is_linked = |node: &&std::sync::Arc<Node>| node.linked.is_some_and(|link| links.contains(&link));
+    let free = |node: &&std::sync::Arc<Node>| selection::holder_of_lock(scene, node.id).is_none();
+    let linked: Vec<NodeId> = scene.nodes().iter().filter(is_linked).filter(free).map(|node| node.id).collect();
+    if !linked.is_empty() {
+        state.session.document.select(linked);
+    }
+}
+
 /// Duplicates the selection and moves, turns or scales the copies as was done last.
 pub fn duplicate_along(state: &mut EditorState) {
     let Some(last) = state.view.last_motion else { return };

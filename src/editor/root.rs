@@ -68,6 +68,8 @@ pub struct Editor {
     pub(super) help: Help,
     /// The renderer for work beside the frames.
     pub(super) studio: Option<SharedStudio>,
+    /// The pictures of the viewports beside the main one.
+    pictures_beside: Vec<Picture>,
     /// The first view of a new document waits for its arrays and models.
     wants_view: bool,
     shown_title: String,
@@ -99,6 +101,7 @@ impl Editor {
             tour: Tour::default(),
             help: Help::default(),
             studio: None,
+            pictures_beside: Vec::new(),
             wants_view: false,
             shown_title: String::new(),
             typing: false,
@@ -149,7 +152,8 @@ impl Editor {
     /// [`Editor::view`] belong to this frame: they include a dragged value.
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
-        self.state.picture.clone_from(picture);
+        self.state.set_pictures(picture, &self.pictures_beside);
+        self.state.begin_views();
         self.appearance.apply(&ctx, &mut self.state);
         let for_jobs = ctx.clone();
         self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
@@ -163,6 +167,8 @@ impl Editor {
         if self.state.session.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
             self.state.session.cancel();
         }
+        let [width, height] = self.rendering.settings.size.map(f64::from);
+        self.state.view.frame_aspect = width.max(1.0) / height.max(1.0);
         self.run_shortcuts(&ctx);
         let now = ctx.input(|i| i.time);
         if let Some(later) = self.state.playback.advance(&mut self.state.session, now) {
@@ -173,6 +179,7 @@ impl Editor {
             self.shell.show(index, &mut self.state, ui);
             self.answer_requests(&ctx);
         }
+        self.state.end_views();
         self.follow_panels(&ctx, before);
         if let Some(reason) = numbers::take_refusal(&ctx) {
             self.report(Message::warning(reason));
@@ -180,6 +187,7 @@ impl Editor {
         if let Some(later) = self.state.files.poll(self.state.derived.jobs(), &mut self.state.session) {
             ctx.request_repaint_after(later);
         }
+        self.state.packing.poll(&mut self.state.session);
         self.show_in_front(&ctx);
         if let Some(command) = self.pending.take() {
             self.run(command, &ctx);
@@ -251,6 +259,16 @@ impl Editor {
                     self.shell.toggle(id);
                     self.state.panels = self.shell.entries();
                 }
+                Request::SplitView(count) => {
+                    let room = self
+                        .state
+                        .views
+                        .room()
+                        .map_or(self.state.view.rect, |beside| beside.union(self.state.view.rect))
+                        .size();
+                    self.shell.split(count, room);
+                    self.state.panels = self.shell.entries();
+                }
                 Request::ResetLayout => {
                     self.shell.arrange(None);
                     self.state.preferences.change(|values| values.layout = None);
@@ -258,6 +276,21 @@ impl Editor {
                 }
             }
         }
+    }
+
+    /// Sets the pictures of the viewports beside the main one, for the next frame.
+    pub fn set_pictures_beside(&mut self, pictures: Vec<Picture>) {
+        self.pictures_beside = pictures;
+    }
+
+    /// The viewport under the keys, 0 for the main one; [`Editor::view`] is its view.
+    pub fn active_view(&self) -> usize {
+        self.state.views.active()
+    }
+
+    /// The views of the others that are shown.
+    pub fn views_beside(&self) -> Vec<(usize, ViewSettings)> {
+        self.state.views_beside()
     }
 
     /// The view for the renderer.
@@ -305,6 +338,7 @@ impl Editor {
             || self.doctor.is_busy()
             || self.wants_scan
             || self.state.files.is_busy()
+            || self.state.packing.is_busy()
             || self.conflict.is_looking()
             || self.is_recovering()
     }
@@ -367,9 +401,11 @@ impl Editor {
         self.state.view.transforming = None;
         (self.state.view.entered, self.state.view.walk, self.state.view.below) = (None, None, None);
         self.state.view.isolated.clear();
+        self.state.reset_views();
         (self.state.view.through, self.state.view.bookmarks) = (None, Default::default());
         self.opening = None;
         self.state.files.forget_attachments();
+        self.state.packing.forget();
         self.state.materials.forget();
         self.forget_kept();
         self.doctor.forget();

@@ -1,11 +1,12 @@
 //! Actions on the selection; each function is one undo step.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::edit_session::EditSession;
 use super::messages::Message;
 use isolith_document::Edit;
-use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
+use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operation, Operator, Scene};
 
 /// The selected nodes without a selected ancestor, in scene order.
 pub fn roots(session: &EditSession) -> Vec<NodeId> {
@@ -54,6 +55,31 @@ pub fn duplicate(session: &mut EditSession) {
     if !added.is_empty() {
         session.document.select(added);
     }
+}
+
+/// Duplicates the selection and selects the copies, whose objects share shape and material with their originals.
+pub fn duplicate_linked(session: &mut EditSession) {
+    let added = session.apply(Edit::DuplicateLinked(roots(session)));
+    if !added.is_empty() {
+        session.document.select(added);
+    }
+}
+
+/// Takes the selected objects, and those in the selected groups, out of their sets of linked ones.
+pub fn unlink(session: &mut EditSession) {
+    let linked = linked_in_selection(session);
+    session.document.begin_step("Unlink");
+    for node in linked {
+        session.apply(Edit::Replace(Node { linked: None, ..Node::clone(&node) }));
+    }
+    session.document.end_gesture();
+}
+
+/// The linked objects that are selected or in selected groups.
+pub fn linked_in_selection(session: &EditSession) -> Vec<Arc<Node>> {
+    let scene = session.document.scene();
+    let places = roots(session).into_iter().filter_map(|id| scene.index_of(id)).flat_map(|at| scene.subtree(at));
+    places.map(|at| scene.nodes()[at].clone()).filter(|node| node.linked.is_some()).collect()
 }
 
 /// Deletes the selection except nodes that are locked or contain locked nodes; clears the selection.
@@ -151,14 +177,14 @@ pub fn place(scene: &Scene, id: NodeId) -> usize {
     scene.children(parent).position(|n| n.id == id).unwrap_or(0)
 }
 
-/// Toggles between subtracted and joined; all nodes get the new state of the active one.
-pub fn toggle_negative(session: &mut EditSession) {
+/// Toggles between this operation and [`Operation::Add`]; all nodes get the new state of the active one.
+pub fn toggle_operation(session: &mut EditSession, operation: Operation) {
     let ids: Vec<NodeId> = session.document.selection().into();
-    if refuse_locked(session, &ids, "cut away or joined again") {
+    if refuse_locked(session, &ids, "subtracted, intersected or added again") {
         return;
     }
-    let on = session.selected().last().is_some_and(|n| !n.negative);
-    change_each(session, |n| n.negative = on && n.has_field());
+    let on = session.selected().last().is_some_and(|n| n.operation != operation);
+    change_each(session, |n| n.operation = if on && n.has_field() { operation } else { Operation::Add });
 }
 
 /// Hides or shows the selection; all nodes get the new state of the active one.

@@ -54,6 +54,11 @@ impl Shell {
         self.dock.arrange(layout);
     }
 
+    /// Shows 1, 2 or 4 viewports in the room of those that are shown, in points.
+    pub fn split(&mut self, count: usize, room: egui::Vec2) {
+        self.dock.split(count, room);
+    }
+
     /// The layout, if the artist has changed it since the last call.
     pub fn take_changed_layout(&mut self) -> Option<PanelLayout> {
         self.dock.take_change().then(|| self.dock.layout())

@@ -10,11 +10,15 @@ use super::intent::Intent;
 use super::keymap::{KeyBindings, Keymap};
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
+use super::navigation::Navigation;
+use super::packing::Packing;
 use super::playback::Playback;
+use super::side_views::SideViews;
 use super::units::LengthUnit;
-use super::view_state::{Picture, ViewSettings, ViewState};
+use super::view_state::{Picture, ViewSettings, ViewState, grid_of};
 use isolith_document::{Document, Preferences};
-use isolith_field::FlatScene;
+use isolith_field::debug_view::ViewMode;
+use isolith_field::{FlatScene, Shading};
 use isolith_scene::{NodeId, NodeKind, Scene, Shape};
 use isolith_session::{Notice, NoticeLevel, ReadDocument, SceneSession};
 
@@ -37,6 +41,8 @@ pub enum Request {
     Intend(Intent),
     /// Toggle the panel of this id.
     TogglePanel(&'static str),
+    /// Show this many viewports: 1, 2 or 4.
+    SplitView(usize),
     /// Put all panels back into their usual places.
     ResetLayout,
 }
@@ -58,6 +64,8 @@ pub struct EditorState {
     pub session: EditSession,
     /// The view of the document.
     pub view: ViewState,
+    /// The other viewports.
+    pub views: SideViews,
     /// The clock of the timeline.
     pub playback: Playback,
     /// Data derived from the document, and the jobs that take longer than a frame.
@@ -66,6 +74,8 @@ pub struct EditorState {
     pub materials: MaterialLibrary,
     /// Jobs that read and write files for it.
     pub files: FileJobs,
+    /// Packs models into it.
+    pub packing: Packing,
     /// The picture of this frame.
     pub picture: Picture,
     /// The examples of the File menu.
@@ -95,10 +105,12 @@ impl Default for EditorState {
         Self {
             session: EditSession::new(Document::new(Scene::new())),
             view: ViewState::default(),
+            views: SideViews::default(),
             playback: Playback::default(),
             derived: SceneSession::default(),
             materials: MaterialLibrary::default(),
             files: FileJobs::default(),
+            packing: Packing::default(),
             picture: Picture::default(),
             examples: Vec::new(),
             can_recover: false,
@@ -117,31 +129,30 @@ impl Default for EditorState {
 impl EditorState {
     /// The view for the renderer.
     pub fn wanted_view(&self) -> ViewSettings {
-        let ViewState {
-            navigation,
+        let ViewState { navigation, shading, view_mode, size_px, is_navigating, .. } = self.view;
+        self.settings_of((navigation, size_px, shading, view_mode), is_navigating)
+    }
+
+    /// The view of a viewport for the renderer.
+    pub(super) fn settings_of(
+        &self,
+        (navigation, size_px, shading, view_mode): (Navigation, [u32; 2], Shading, ViewMode),
+        is_navigating: bool,
+    ) -> ViewSettings {
+        let ViewState { passes, samples, show_grid, show_outline, .. } = self.view;
+        ViewSettings {
+            camera: navigation.camera(),
+            size_px,
+            navigating: is_navigating || self.session.is_changing() || self.playback.is_moving(),
+            show_grid,
+            grid: grid_of(&navigation, LengthUnit::named(&self.preferences.values().unit).meters()),
+            show_outline,
             shading,
             view_mode,
             passes,
-            samples,
-            show_grid,
-            show_outline,
-            size_px,
-            is_navigating,
-            ..
-        } = &self.view;
-        ViewSettings {
-            camera: navigation.camera(),
-            size_px: *size_px,
-            navigating: *is_navigating || self.session.is_changing() || self.playback.is_moving(),
-            show_grid: *show_grid,
-            grid: self.view.grid(LengthUnit::named(&self.preferences.values().unit).meters()),
-            show_outline: *show_outline,
-            shading: *shading,
-            view_mode: *view_mode,
-            passes: *passes,
             // A view in parallel has no eye near the scene.
             has_cut_offs: !navigation.orthographic,
-            samples: *samples,
+            samples,
         }
     }
 

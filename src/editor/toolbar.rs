@@ -36,7 +36,8 @@ impl Panel for Toolbar {
 }
 
 /// Submenus of View.
-const SUBMENUS: [(&str, Menu); 5] = [
+const SUBMENUS: [(&str, Menu); 6] = [
+    ("Split view", Menu::Split),
     ("Bookmarks", Menu::Bookmarks),
     ("Transform", Menu::Tool),
     ("Orientation", Menu::Orientation),
@@ -81,7 +82,7 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
         divider(ui);
         let [unite, intersect, subtract] =
             [Operator::Union, Operator::Intersection, Operator::Difference].map(Command::Join);
-        let roles = [unite, intersect, subtract, Command::ToggleNegative, Command::Group];
+        let roles = [unite, intersect, subtract, Command::ToggleSubtract, Command::Group];
         buttons(state, ui, theme::GROUP, &roles, &mut chosen);
         divider(ui);
         buttons(state, ui, theme::TEXT, &[Command::Duplicate, Command::Delete], &mut chosen);

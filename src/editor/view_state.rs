@@ -122,6 +122,8 @@ pub struct ViewState {
     pub navigation: Navigation,
     /// The camera that one looks through.
     pub through: Option<Through>,
+    /// Width divided by height of its frame: that of the pictures of the render dialog.
+    pub frame_aspect: f64,
     /// Whether that camera moves with the view.
     pub locks_camera: bool,
     /// Whether its frame shows where action and titles are safe.
@@ -189,6 +191,7 @@ impl Default for ViewState {
         Self {
             navigation: Navigation::default(),
             through: None,
+            frame_aspect: 16.0 / 9.0,
             locks_camera: false,
             show_safe_areas: false,
             bookmarks: [None; BOOKMARKS],
@@ -223,6 +226,18 @@ impl Default for ViewState {
     }
 }
 
+/// The grid, with cells of a power of ten of this unit, in meters: on the ground, or across an orthographic view along an
+/// axis.
+pub fn grid_of(navigation: &Navigation, unit: f64) -> GridView {
+    let is_flat = navigation.orthographic;
+    let size = match is_flat {
+        true => 2.0 * navigation.distance * (0.5 * navigation.fov_y).tan(),
+        false => navigation.eye().y.abs().max(1e-3),
+    };
+    let cell = unit * 10.0_f64.powf((size / unit).log10().floor()) * 0.1;
+    GridView { axis: navigation.axis().unwrap_or(1), cell, fades: !is_flat }
+}
+
 impl ViewState {
     /// Width divided by height.
     pub fn aspect(&self) -> f64 {
@@ -230,17 +245,9 @@ impl ViewState {
         width / height
     }
 
-    /// The grid, with cells of a power of ten of this unit, in meters: on the ground, or across an orthographic view
-    /// along an axis.
+    /// The grid of the view.
     pub fn grid(&self, unit: f64) -> GridView {
-        let navigation = &self.navigation;
-        let is_flat = navigation.orthographic;
-        let size = match is_flat {
-            true => 2.0 * navigation.distance * (0.5 * navigation.fov_y).tan(),
-            false => navigation.eye().y.abs().max(1e-3),
-        };
-        let cell = unit * 10.0_f64.powf((size / unit).log10().floor()) * 0.1;
-        GridView { axis: navigation.axis().unwrap_or(1), cell, fades: !is_flat }
+        grid_of(&self.navigation, unit)
     }
 
     /// Whether a grid is in the picture.

@@ -13,6 +13,7 @@ use super::hover::Hover;
 use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
 use super::projection::Projection;
+use super::side_views::SIDES;
 use super::state::{EditorState, Request};
 use super::transforms::transform_bar;
 use super::transforms::transform_drag::Following;
@@ -27,6 +28,8 @@ use isolith_field::debug_view::ViewMode;
 /// The panel of the viewport.
 #[derive(Default)]
 pub struct Viewport {
+    /// Its number: 0 for the main one.
+    index: usize,
     dragging: Option<Dragging>,
     modal: ModalTransform,
     surface: SurfaceUnderPointer,
@@ -53,8 +56,24 @@ impl Panel for Viewport {
     }
 
     fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
-        let pixels_per_point = ui.ctx().pixels_per_point();
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let is_down = ui.input(|i| i.pointer.any_down() && !i.pointer.any_pressed());
+        let pointer = response.hover_pos().filter(|_| response.hovered() && !is_down);
+        // What is dragged in from a palette hovers without a hover.
+        let dropping = ui.input(|i| i.pointer.latest_pos()).filter(|at| rect.contains(*at));
+        let pointer = pointer.or(dropping.filter(|_| state.view.dragging_in.is_some()));
+        state.show_view(self.index, pointer, |state| self.show(state, ui, rect, &response));
+    }
+}
+
+impl Viewport {
+    /// The viewport of this number.
+    pub fn of(index: usize) -> Self {
+        Self { index, ..Self::default() }
+    }
+
+    fn show(&mut self, state: &mut EditorState, ui: &mut Ui, rect: Rect, response: &Response) {
+        let pixels_per_point = ui.ctx().pixels_per_point();
         let snapped = |v: f32| (v * pixels_per_point).round() / pixels_per_point;
         state.view.rect = Rect::from_min_max(
             pos2(snapped(rect.min.x), snapped(rect.min.y)),
@@ -62,17 +81,22 @@ impl Panel for Viewport {
         );
         let size = state.view.rect.size() * pixels_per_point;
         state.view.size_px = [size.x, size.y].map(|v| (v.round() as u32).max(1));
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Viewport"));
-        self.navigate(state, ui, &response);
-        self.paint(state, ui, &response);
+        let name = self.index.checked_sub(1).map_or("Viewport", |beside| SIDES[beside].1);
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
+        self.navigate(state, ui, response);
+        self.paint(state, ui, response);
         state.view.copy_path = self.hover.copy_path(state.session.document.scene());
         shading_bar::show(state, ui);
-        transform_bar::show(state, ui);
+        if self.index == 0 {
+            transform_bar::show(state, ui);
+        }
+        if state.views.is_split() && state.views.active() == self.index {
+            let line = egui::Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.7));
+            ui.painter().rect_stroke(state.view.rect, 0.0, line, egui::StrokeKind::Inside);
+        }
         self.modal.settle(ui);
     }
-}
 
-impl Viewport {
     fn activity(&self, state: &EditorState, ui: &Ui, response: &Response) -> PointerActivity {
         let over_handle = || {
             let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());

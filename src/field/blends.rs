@@ -7,7 +7,7 @@ use super::budget::Budget;
 use super::composition::{begin_with, group_of, join, size_of_fold};
 use super::operand::Operand;
 use isolith_geometry::Aabb;
-use isolith_scene::{Blend, BlendKernel, BlendOverride, Group, Node, NodeId};
+use isolith_scene::{Blend, BlendKernel, BlendOverride, Group, Node, NodeId, Operator};
 
 /// Smaller radii have no effect in f32 and count as 0.
 const LEAST_RADIUS: f64 = 1e-30;
@@ -63,7 +63,7 @@ impl<'g, 'a> Joiner<'g, 'a> {
     /// Sets the join and the blend of the operand from its group and its own override.
     pub fn set_blend(&mut self, node: &Node, operand: &mut Operand<'a>) {
         let group = self.group;
-        operand.join = if node.negative { Join::Difference } else { Join::of(group.operator) };
+        operand.join = Join::of(node.operation.in_group(group.operator));
         let blend = match node.blend_override {
             BlendOverride::Inherit => group.blend,
             BlendOverride::Hard => Blend { radius: 0.0, ..group.blend },
@@ -101,7 +101,7 @@ impl<'g, 'a> Joiner<'g, 'a> {
             return;
         }
         let own = operand.clone();
-        let is_symmetric = matches!(operand.join, Join::Union | Join::Intersection);
+        let is_symmetric = is_symmetric(node, self.group.operator);
         let is_apart = |other: &Node| self.apart.get(&node.id).is_some_and(|apart| apart.contains(&other.id));
         if operand.blend.radius > 0.0
             && self.apart.contains_key(&node.id)
@@ -131,15 +131,21 @@ impl<'g, 'a> Joiner<'g, 'a> {
         let mut fold: Vec<Operand<'a>> = Vec::new();
         for (other, operand) in &self.so_far {
             match () {
-                () if is_apart(other) => {}
+                // What the others lost to a cut stays lost.
+                () if is_apart(other) && other.adds() => {}
                 () if !fold.is_empty() => join(&mut fold, operand.clone()),
                 // Cutting from nothing leaves nothing.
-                () if other.negative => {}
+                () if !other.adds() => {}
                 () => fold = begin_with(operand.clone()),
             }
         }
         fold
     }
+}
+
+/// Whether it does not matter which of the node and those before it in its group comes first.
+pub(super) fn is_symmetric(node: &Node, operator: Operator) -> bool {
+    node.operation.in_group(operator) == operator && matches!(operator, Operator::Union | Operator::Intersection)
 }
 
 /// The largest half extent; `None` if unbounded, 0 if empty.

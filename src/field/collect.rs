@@ -21,13 +21,13 @@ use super::prepare::PreparedShape;
 use super::survey::{Survey, active};
 use isolith_bricks::MAX_BRICK_TEXELS;
 use isolith_geometry::singular_values;
-use isolith_scene::{Modifier, Node, NodeId, NodeKind, Object, Operator, Scene};
+use isolith_scene::{Modifier, Node, NodeId, NodeKind, Object, Operation, Operator, Scene};
 
 /// The folds of all components, and the warnings met on the way.
 pub(super) struct Components<'a> {
     pub operands: Vec<Vec<Operand<'a>>>,
     pub warnings: Vec<Warning>,
-    /// Whether a negative node at the top cuts the components before it.
+    /// Whether a node at the top is subtracted from the components before it, or keeps a part of them.
     pub has_cuts: bool,
     /// The amounts taken, and the first limit that was hit.
     pub budget: Budget,
@@ -40,9 +40,9 @@ pub(super) fn is_opened(scene: &Scene, node: &Node) -> bool {
 
 /// The same, as far as the node itself decides it.
 fn is_plain_group(node: &Node) -> bool {
-    let Node { negative, kind: NodeKind::Group(group), .. } = node else { return false };
+    let NodeKind::Group(group) = &node.kind else { return false };
     let is_hard = group.operator == Operator::Union && group.blend.radius == 0.0;
-    !negative && active(node).next().is_none() && is_hard
+    node.adds() && active(node).next().is_none() && is_hard
 }
 
 /// The fold of the component whose outermost node is at `index`; `None` if that node is not exactly one component, or
@@ -168,7 +168,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     }
 
     /// Splits the children in `range` of a hard union: each becomes a component, and hard unions among them are
-    /// opened. A negative child is cut from those before it.
+    /// opened. A child that subtracts or intersects acts on those before it.
     fn split(
         &mut self,
         range: std::ops::Range<usize>,
@@ -189,15 +189,21 @@ impl<'a, 'b> Collector<'a, 'b> {
                 self.split(first + 1..at, world * node.transform.to_affine(), out, cuts);
                 continue;
             }
-            let Found::Operand(operand) = self.operand(first, &world, node) else { continue };
-            if !node.negative {
-                out.extend(apart(operand).into_iter().map(begin_with));
+            let operand = match self.operand(first, &world, node) {
+                Found::Operand(operand) => Some(operand),
+                Found::Nothing if node.operation == Operation::Intersect => None,
+                Found::Nothing | Found::LeftOut => continue,
+            };
+            if node.adds() {
+                out.extend(operand.into_iter().flat_map(apart).map(begin_with));
                 continue;
             }
-            if out.len() == start {
-                self.warn_nothing_to_cut(node);
+            match &operand {
+                Some(_) if out.len() == start => self.warn_nothing_before(node),
+                None if out.len() > start => self.warn(node, "is empty, so nothing is left of what it keeps".into()),
+                _ => {}
             }
-            cuts.push(Cut { from: start..out.len(), negative: operand });
+            cuts.push(Cut { from: start..out.len(), operation: node.operation, operand });
         }
     }
 
@@ -428,7 +434,13 @@ impl<'a, 'b> Collector<'a, 'b> {
         }
     }
 
-    pub fn warn_nothing_to_cut(&mut self, node: &Node) {
-        self.warn(node, "is negative, but nothing stands before it in its group that it could be cut from".into());
+    pub fn warn_nothing_before(&mut self, node: &Node) {
+        let reason = match node.operation {
+            Operation::Intersect => {
+                "intersects, but nothing stands before it in its group of which it could keep a part"
+            }
+            _ => "is subtracted, but nothing stands before it in its group that it could be cut from",
+        };
+        self.warn(node, reason.into());
     }
 }

@@ -1,5 +1,5 @@
-//! Cuts by the negative nodes at the top of a scene: each is cut from the components before it that it reaches, since
-//! (a ∪ b) − d = (a − d) ∪ (b − d) exactly.
+//! Cuts by nodes at the top of a scene that subtract or intersect: each acts on the components before it that it
+//! reaches, since (a ∪ b) − d = (a − d) ∪ (b − d) exactly, and the same with ∩.
 
 use std::ops::Range;
 
@@ -8,33 +8,48 @@ use super::budget::Budget;
 use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use isolith_geometry::Aabb;
-use isolith_scene::Blend;
+use isolith_scene::{Blend, Operation, Operator};
 
-/// A negative operand, and the components that it is cut from if it reaches them.
+/// An operand that subtracts or intersects, and the components on which it acts.
 pub(super) struct Cut<'a> {
     pub from: Range<usize>,
-    pub negative: Operand<'a>,
+    pub operation: Operation,
+    /// `None` is the empty set, which only an intersection has.
+    pub operand: Option<Operand<'a>>,
 }
 
-/// Applies the cuts in the order of the negatives in the scene. A cut leaves the bounds of a component unchanged, so
-/// one tree serves all cuts, however many components and cuts there are.
-pub(super) fn apply<'a>(components: &mut [Vec<Operand<'a>>], cuts: Vec<Cut<'a>>, budget: &mut Budget) {
+/// Applies the cuts in their order in the scene. A cut does not enlarge a component, so one tree of the bounds before
+/// serves all cuts, however many components and cuts there are. A component that an intersection does not reach is gone.
+pub(super) fn apply<'a>(components: &mut Vec<Vec<Operand<'a>>>, cuts: Vec<Cut<'a>>, budget: &mut Budget) {
     if cuts.is_empty() {
         return;
     }
     let tree = BoxTree::new(components.iter().map(|component| fold_bounds(component).bounds).collect());
     let mut found = Vec::new();
-    for Cut { from, negative } in cuts {
-        let looked_at = tree.meeting(&negative.bounds, &mut found);
-        found.retain(|at| from.contains(at));
-        let entries = negative.entries.saturating_mul(found.len());
-        if !budget.take_steps(negative.node, looked_at) || !budget.take_entries(negative.node, entries) {
-            return;
+    for Cut { from, operation, operand } in cuts {
+        if let Some(operand) = &operand {
+            let looked_at = tree.meeting(&operand.bounds, &mut found);
+            found.retain(|at| from.contains(at));
+            let entries = operand.entries.saturating_mul(found.len());
+            if !budget.take_steps(operand.node, looked_at) || !budget.take_entries(operand.node, entries) {
+                return;
+            }
         }
-        for at in found.drain(..) {
-            components[at].push(Operand { join: Join::Difference, blend: Blend::HARD, ..negative.clone() });
+        if operation == Operation::Intersect {
+            found.sort_unstable();
+            for at in from.filter(|at| found.binary_search(at).is_err()) {
+                components[at].clear();
+            }
+        }
+        let join = Join::of(operation.in_group(Operator::Union));
+        for (at, operand) in found.drain(..).filter_map(|at| Some((at, operand.as_ref()?))) {
+            // What an intersection has left nothing of stays gone.
+            if !components[at].is_empty() {
+                components[at].push(Operand { join, blend: Blend::HARD, ..operand.clone() });
+            }
         }
     }
+    components.retain(|component| !component.is_empty());
 }
 
 /// Most boxes in a leaf of the tree; a query compares them one by one.

@@ -6,7 +6,7 @@ use super::blends::Joiner;
 use super::collect::{Collector, Found};
 use super::composition::begin_with;
 use super::operand::Operand;
-use isolith_scene::{EmptyOperandResult, Group, Node, Operator};
+use isolith_scene::{EmptyOperandResult, Group, Node};
 
 /// The result so far.
 enum Stand<'a> {
@@ -65,19 +65,19 @@ impl<'a> Collector<'a, '_> {
 impl<'a> Folding<'_, 'a> {
     /// Whether a hidden child is the one that all others would operate on.
     fn needs(&self, node: &Node) -> bool {
-        let is_first = matches!(self.stand, Stand::None) && node.has_field() && !node.negative;
+        let is_first = matches!(self.stand, Stand::None) && node.has_field() && node.adds();
         is_first && self.group.operator.needs_first() && !node.visible
     }
 
     /// Joins a child; `operand` is `None` if the child is empty.
     fn step(&mut self, collector: &mut Collector<'a, '_>, node: &'a Node, operand: Option<Operand<'a>>) {
-        let operator = if node.negative { Operator::Difference } else { self.group.operator };
+        let operator = node.operation.in_group(self.group.operator);
         let share = self.group.share;
         self.stand = match (std::mem::replace(&mut self.stand, Stand::Nothing), operand) {
-            (Stand::None, Some(operand)) if !node.negative => self.begin(node, operand),
-            (Stand::None, operand) if node.negative => {
+            (Stand::None, Some(operand)) if node.adds() => self.begin(node, operand),
+            (Stand::None, operand) if !node.adds() => {
                 if operand.is_some() {
-                    collector.warn_nothing_to_cut(node);
+                    collector.warn_nothing_before(node);
                 }
                 Stand::None
             }
@@ -85,9 +85,9 @@ impl<'a> Folding<'_, 'a> {
                 self.empty = Some(node);
                 Stand::Nothing
             }
-            (Stand::Nothing, Some(_)) if node.negative => {
+            (Stand::Nothing, Some(_)) if !node.adds() => {
                 if self.empty.is_some() {
-                    collector.warn_nothing_to_cut(node);
+                    collector.warn_nothing_before(node);
                 }
                 Stand::Nothing
             }

@@ -275,7 +275,7 @@ impl Last {
 /// Whether only values differ, so that the arrays keep their structure: those of an object, of a group within a
 /// component, of a light, a camera or a mesh.
 fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
-    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.blend_override, n.march, n.apart.clone());
+    let form = |n: &Node| (n.id, n.parent, n.visible, n.operation, n.blend_override, n.march, n.apart.clone());
     let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
     let kinds = match (&old.kind, &new.kind) {
         (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,

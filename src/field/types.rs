@@ -182,7 +182,7 @@ fn warn_of_blends(flat: &mut FlatScene, scene: &Scene, node: &Node) {
             NodeKind::Group(kind) => kind.operator == Operator::Union && kind.blend.radius == 0.0,
             _ => true,
         };
-        if !is_plain || group.negative || group.modifiers.iter().any(|slot| slot.enabled) {
+        if !is_plain || !group.adds() || group.modifiers.iter().any(|slot| slot.enabled) {
             let name = &group.name;
             let reason =
                 format!("joins others by hard union: blends, cuts and modifiers of {name:?} do not act on its copies");

@@ -26,7 +26,7 @@ pub(super) fn scene() -> Scene {
     torso(&mut builder, body, [fur, belly]);
     limbs(&mut builder, body, fur);
     horns(&mut builder, body, horn);
-    let bite = object("Bite", sphere(0.2), belly).negative();
+    let bite = object("Bite", sphere(0.2), belly).subtracted();
     builder.add(body, bite.at(v(0.98, 2.36, -0.02)));
 
     builder.add(None, object("Plinth", cylinder(1.5, 0.3, 0.04), stone).at(v(0.0, -0.15, 0.0)));

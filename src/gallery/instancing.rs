@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::character::mesh_field;
 use super::scene_builder::{
-    SceneBuilder, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus,
+    SceneBuilder, blended, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus,
 };
 use isolith_scene::{
     BlendKernel, CameraNode, Dynamic, DynamicKind, Instancer, Lattice, Mask, MaterialId, MaterialVariation, Modifier,
@@ -123,18 +124,10 @@ fn trees(builder: &mut SceneBuilder, hills: NodeId, wind: Dynamic) {
     let forest = builder.add(None, instancer("Forest", forest).moving(wind));
     let fir = builder.add(forest, group("Fir", Operator::Union).weighted(2.0));
     builder.add(fir, object("Trunk", round_cone(0.16, 0.05, 3.0), bark).at(v(0.0, 0.1, 0.0)));
-    for (at, (radius, height)) in [(1.05, 1.5), (0.82, 1.35), (0.55, 1.25)].into_iter().enumerate() {
-        let tier = object("Tier", cone(radius, 0.03, height), needles).at(v(0.0, 1.35 + 0.85 * at as f64, 0.0));
-        builder.add(fir, tier);
-    }
+    builder.add(fir, object("Needles", mesh_field("models/fir.glb", 112.0), needles));
     let oak = builder.add(forest, group("Oak", Operator::Union));
-    builder.add(oak, object("Trunk", round_cone(0.22, 0.12, 1.6), bark).at(v(0.0, 0.1, 0.0)));
-    let crown = builder.add(oak, blended("Crown", Operator::Union, BlendKernel::Circular, 0.5));
-    for (radius, at) in
-        [(0.95, [0.0, 2.5, 0.0]), (0.7, [0.75, 2.2, 0.2]), (0.65, [-0.6, 2.25, 0.4]), (0.6, [-0.1, 2.2, -0.75])]
-    {
-        builder.add(crown, object("Leaves", sphere(radius), leaves).at(at.into()));
-    }
+    builder.add(oak, object("Wood", mesh_field("models/oak-wood.glb", 112.0), bark));
+    builder.add(oak, object("Leaves", mesh_field("models/oak-leaves.glb", 96.0), leaves));
 }
 
 fn grass(builder: &mut SceneBuilder, hills: NodeId, wind: Dynamic) {
@@ -154,10 +147,7 @@ fn grass(builder: &mut SceneBuilder, hills: NodeId, wind: Dynamic) {
     meadow.material = MaterialVariation { hue: 0.04, saturation: 0.25, value: 0.4, ..MaterialVariation::default() };
     let meadow = builder.add(None, instancer("Meadow", meadow).at(v(0.0, 0.0, 18.0)).moving(wind));
     let tuft = builder.add(meadow, group("Tuft", Operator::Union));
-    for (lean, height) in [([0.07, 0.0, 0.02], 0.34), ([-0.05, 0.0, 0.05], 0.28), ([0.0, 0.0, -0.07], 0.31)] {
-        let end = [2.0 * lean[0], height, 2.0 * lean[2]];
-        builder.add(tuft, object("Blade", capsule(lean.map(|c| 0.4 * c), end, 0.014), blade));
-    }
+    builder.add(tuft, object("Blades", mesh_field("models/tuft.glb", 80.0), blade));
 }
 
 fn stones(builder: &mut SceneBuilder, hills: NodeId) {

@@ -48,7 +48,7 @@ fn planet(builder: &mut SceneBuilder) {
     for (tilt, heading, radius) in
         [(33.0, 22.0, 0.36), (22.0, -78.0, 0.25), (36.0, 68.0, 0.28), (45.0, -20.0, 0.30), (49.0, 47.0, 0.22)]
     {
-        let hole = object("Crater", sphere(radius), crater).negative();
+        let hole = object("Crater", sphere(radius), crater).subtracted();
         builder.add(planet, hole.at(on_planet(tilt, heading, radius * 0.45)));
     }
 }
@@ -124,7 +124,7 @@ fn rocket(builder: &mut SceneBuilder) {
     let nozzle =
         builder.add(rocket, blended("Nozzle", Operator::Union, BlendKernel::Circular, 0.02).at(v(0.0, -1.05, 0.0)));
     builder.add(nozzle, object("Bell", cone(0.27, 0.19, 0.24), steel));
-    builder.add(nozzle, object("Inside", cone(0.235, 0.14, 0.24), steel).at(v(0.0, -0.03, 0.0)).negative());
+    builder.add(nozzle, object("Inside", cone(0.235, 0.14, 0.24), steel).at(v(0.0, -0.03, 0.0)).subtracted());
     flame(builder, rocket);
 }
 

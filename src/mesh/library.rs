@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::limits::MAX_TEXTURE_BYTES;
 use super::load::parse_within;
 use super::model_pose::ModelPose;
-use super::resolve::{MeshFileStamp, Reader, inside, read_file};
+use super::resolve::{MeshFileStamp, ModelFileTable, Reader, inside, read_file};
 use super::texture::SharedTextures;
 use super::{MeshError, TriangleMesh};
 
@@ -20,6 +20,8 @@ pub type MeshResult = Result<Arc<TriangleMesh>, Arc<MeshError>>;
 #[derive(Clone, Debug, Default)]
 pub struct MeshLibrary {
     folder: Option<PathBuf>,
+    /// Files that go before those of the folder.
+    packed: Arc<ModelFileTable>,
     loaded: HashMap<ModelPose, Loaded>,
     revision: u64,
 }
@@ -35,6 +37,7 @@ struct Loaded {
 #[derive(Clone, Debug)]
 pub struct MeshSource {
     folder: Option<PathBuf>,
+    packed: Arc<ModelFileTable>,
     pose: ModelPose,
     files: Vec<MeshFileStamp>,
     /// Bytes available for its textures.
@@ -77,7 +80,23 @@ impl MeshLibrary {
     /// Changes the folder; forgets everything if it differs from the old one.
     pub fn set_folder(&mut self, folder: Option<PathBuf>) {
         if self.folder != folder {
-            *self = Self { revision: self.revision + 1, ..Self::new(folder) };
+            *self = Self { revision: self.revision + 1, packed: self.packed.clone(), ..Self::new(folder) };
+        }
+    }
+
+    /// The same with files that go before those of the folder.
+    pub fn with_packed(mut self, packed: Arc<ModelFileTable>) -> Self {
+        self.packed = packed;
+        self
+    }
+
+    /// Changes the files that go before those of the folder; forgets everything if they differ from the old ones.
+    pub fn set_packed(&mut self, packed: &Arc<ModelFileTable>) {
+        if !Arc::ptr_eq(&self.packed, packed) {
+            if self.packed != *packed {
+                *self = Self { revision: self.revision + 1, ..Self::new(self.folder.take()) };
+            }
+            self.packed = packed.clone();
         }
     }
 
@@ -123,7 +142,7 @@ impl MeshLibrary {
     /// Takes over the meshes that a copy of this library has read since; does nothing if this one has moved to another
     /// folder. So another thread can read meshes, each within the texture budget that the others leave it.
     pub fn take_new(&mut self, other: Self) {
-        if self.folder != other.folder {
+        if self.folder != other.folder || self.packed != other.packed {
             return;
         }
         for (pose, loaded) in other.loaded {
@@ -160,13 +179,14 @@ impl MeshLibrary {
         let texture_budget = MAX_TEXTURE_BYTES.saturating_sub(textures.values().sum());
         let other = meshes().find(|(other, ..)| other.path == pose.path);
         let other = other.map(|(_, mesh, files)| (mesh.clone(), files.clone()));
-        MeshSource { folder: self.folder.clone(), pose, files, texture_budget, other }
+        MeshSource { folder: self.folder.clone(), packed: self.packed.clone(), pose, files, texture_budget, other }
     }
 
     /// Replaces a mesh by a newly read one, unless the new one is broken and the old one is not.
     pub fn replace(&mut self, fresh: Reread) -> ReloadOutcome {
         let Reread { source, result } = fresh;
-        let Some(loaded) = self.loaded.get_mut(&source.pose).filter(|_| self.folder == source.folder) else {
+        let is_same_place = self.folder == source.folder && self.packed == source.packed;
+        let Some(loaded) = self.loaded.get_mut(&source.pose).filter(|_| is_same_place) else {
             return ReloadOutcome::Unwanted;
         };
         self.revision += 1;
@@ -215,6 +235,12 @@ impl MeshSource {
     fn read_into(&self, files: &mut Vec<MeshFileStamp>) -> Result<TriangleMesh, MeshError> {
         let path = &self.pose.path;
         let refuse = |reason: String| MeshError::new(path, "", &reason);
+        let mut budget = self.texture_budget;
+        if let Some(bytes) = self.packed.get(path) {
+            let reader = Reader::of_table(&self.packed, path);
+            let shared = self.other.as_ref().map_or_else(SharedTextures::new, |(mesh, _)| mesh.shared_textures());
+            return parse_within(bytes, Path::new(path), &reader, &mut budget, (self.pose.clip.as_ref(), shared));
+        }
         let Some(folder) = &self.folder else {
             return Err(refuse("the scene has no folder to look in until it is saved".into()));
         };
@@ -224,7 +250,6 @@ impl MeshSource {
         let bytes = read_file(&file).map_err(refuse)?;
         // Files that the glTF names must lie in its folder or below, as for any glTF.
         let reader = Reader::new(file.parent());
-        let mut budget = self.texture_budget;
         let unchanged = self.other.as_ref().filter(|(_, files)| files.iter().all(|file| file.again() == *file));
         let shared = unchanged.map_or_else(SharedTextures::new, |(mesh, _)| mesh.shared_textures());
         let result = parse_within(&bytes, Path::new(path), &reader, &mut budget, (self.pose.clip.as_ref(), shared));
@@ -233,6 +258,26 @@ impl MeshSource {
         files.extend(reader.into_files());
         result
     }
+}
+
+/// The files of a model, by their paths relative to the scene's folder: its own, and those that it names.
+///
+/// # Errors
+/// The model cannot be read.
+pub fn model_files(folder: &Path, path: &str) -> Result<ModelFileTable, MeshError> {
+    let refuse = |reason: String| MeshError::new(path, "", &reason);
+    let file = inside(folder, path).map_err(refuse)?;
+    let bytes = read_file(&file).map_err(refuse)?;
+    let mut files = ModelFileTable::new();
+    if let Some(own) = file.parent() {
+        let reader = Reader::keeping(own);
+        let mut budget = MAX_TEXTURE_BYTES;
+        parse_within(&bytes, Path::new(path), &reader, &mut budget, (None, SharedTextures::new()))?;
+        let below = path.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        files.extend(reader.into_named().into_iter().map(|(name, bytes)| (format!("{below}{name}"), bytes)));
+    }
+    files.insert(path.to_owned(), bytes.into());
+    Ok(files)
 }
 
 impl Reread {

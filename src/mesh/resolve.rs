@@ -1,9 +1,11 @@
 //! Reads bytes from files inside a folder and from data URIs. Opens nothing outside the folder.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 use super::error::name;
@@ -30,17 +32,53 @@ impl MeshFileStamp {
     }
 }
 
+/// The bytes of files that travel within a scene, by their paths relative to its folder.
+pub type ModelFileTable = BTreeMap<String, Arc<[u8]>>;
+
+/// Where a glTF file stands.
+#[derive(Clone, Copy, Debug)]
+enum GltfPlace<'a> {
+    /// It cannot name other files.
+    Nowhere,
+    Folder(&'a Path),
+    /// Among these files, in this folder of theirs.
+    Table(&'a ModelFileTable, &'a str),
+}
+
 /// Reads the files that a glTF names, and records which were requested, whether they exist or not.
 #[derive(Debug)]
 pub(super) struct Reader<'a> {
-    /// The folder of the glTF file; `None` if it has none and so cannot name other files.
-    folder: Option<&'a Path>,
+    place: GltfPlace<'a>,
     files: RefCell<Vec<MeshFileStamp>>,
+    /// The files that were read, by the paths that the glTF names.
+    named: RefCell<ModelFileTable>,
+    /// Whether to keep those.
+    keeps: bool,
 }
 
 impl<'a> Reader<'a> {
+    /// A reader for a glTF file in this folder; without one it cannot name other files.
     pub fn new(folder: Option<&'a Path>) -> Self {
-        Self { folder, files: RefCell::default() }
+        Self::at(folder.map_or(GltfPlace::Nowhere, GltfPlace::Folder))
+    }
+
+    /// A reader for the glTF file at `path` in a table.
+    pub fn of_table(table: &'a ModelFileTable, path: &'a str) -> Self {
+        Self::at(GltfPlace::Table(table, path.rsplit_once('/').map_or("", |(folder, _)| folder)))
+    }
+
+    /// A reader that keeps what it has read.
+    pub fn keeping(folder: &'a Path) -> Self {
+        Self { keeps: true, ..Self::new(Some(folder)) }
+    }
+
+    fn at(place: GltfPlace<'a>) -> Self {
+        Self { place, files: RefCell::default(), named: RefCell::default(), keeps: false }
+    }
+
+    /// The files that were read, by the paths that the glTF names.
+    pub fn into_named(self) -> ModelFileTable {
+        self.named.into_inner()
     }
 
     /// The requested files.
@@ -53,22 +91,42 @@ impl<'a> Reader<'a> {
         if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
             return read_data_uri(&uri[5..]);
         }
-        let Some(folder) = self.folder else {
-            return Err("names another file, but this glTF stands in no folder".into());
-        };
         // These have a meaning in URIs, unless they are percent-encoded (`%23`).
         if uri.contains([':', '?', '#']) {
             return Err(format!("“{}” is not a plain relative path", name(uri)));
         }
         let path = percent_decoded(uri)?;
+        let folder = match self.place {
+            GltfPlace::Nowhere => return Err("names another file, but this glTF stands in no folder".into()),
+            GltfPlace::Folder(folder) => folder,
+            GltfPlace::Table(table, folder) => {
+                let path = plain(&path)?;
+                let path = if folder.is_empty() { path } else { format!("{folder}/{path}") };
+                let packed = table.get(&path).map(|bytes| bytes.to_vec());
+                return packed.ok_or_else(|| format!("“{}” is not among the packed files", name(&path)));
+            }
+        };
         let file = inside(folder, &path);
         // Stamped before reading, so that a change during the read is noticed later.
         let stamp = file
             .as_ref()
             .map_or_else(|_| MeshFileStamp { path: folder.join(&path), state: None }, |file| MeshFileStamp::of(file));
         self.files.borrow_mut().push(stamp);
-        read_file(&file?)
+        let bytes = read_file(&file?)?;
+        if self.keeps {
+            self.named.borrow_mut().insert(plain(&path)?, bytes.as_slice().into());
+        }
+        Ok(bytes)
     }
+}
+
+/// A relative path without `.` that does not leave its folder.
+fn plain(path: &str) -> Result<String, String> {
+    let parts: Vec<&str> = path.split('/').filter(|part| !part.is_empty() && *part != ".").collect();
+    if parts.contains(&"..") {
+        return Err(format!("“{}” leaves the folder by “..”", name(path)));
+    }
+    Ok(parts.join("/"))
 }
 
 /// The whole file. Refuses files that are too large or not regular. The error is a reason for the user.

@@ -4,7 +4,7 @@
 use glam::DQuat;
 
 use super::drawn::text_fault;
-use super::limits::{Limits, MAX_APART, MAX_NAME, MAX_PATH, Rule};
+use super::limits::{Limits, MAX_APART, MAX_ID, MAX_NAME, MAX_PATH, Rule};
 use super::params::{Param, Params};
 use super::{
     CameraNode, DisplaySettings, Environment, Falloff, Instancer, Light, LightKind, List, MAX_DYNAMICS, MAX_MASKS,
@@ -34,8 +34,14 @@ impl Fault {
 /// Checks the values of a node alone; the table checks ids and references.
 pub fn node(node: &Node) -> Result<(), Fault> {
     name(&node.name)?;
-    if node.negative && !node.has_field() {
-        return Err(Fault::new("negative", "only objects and groups can be negative"));
+    if !node.adds() && !node.has_field() {
+        return Err(Fault::new("operation", "only objects and groups can subtract or intersect"));
+    }
+    if node.linked.is_some() && !matches!(node.kind, NodeKind::Object(_)) {
+        return Err(Fault::new("linked", "only objects can be linked"));
+    }
+    if node.linked.is_some_and(|link| link > MAX_ID) {
+        return Err(Fault::new("linked", format!("must be at most {MAX_ID}")));
     }
     if node.apart.len() > MAX_APART {
         return Err(Fault::new("apart", format!("must name at most {MAX_APART} nodes, not {}", node.apart.len())));

@@ -84,6 +84,12 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of a profile.
 pub const CORNERS: [usize; 2] = [3, 256];
 
+/// Most files that are packed into a scene.
+pub const MAX_PACKED_FILES: usize = 1_000;
+/// Most bytes of the files that are packed into a scene, together. Their text takes a third more, and recovery writes it
+/// every few seconds.
+pub const MAX_PACKED_BYTES: usize = 64 << 20;
+
 /// Largest file embedded in the scene, in bytes.
 pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
 /// Greatest width and height of an image, in pixels.
@@ -112,6 +118,8 @@ pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, M
 pub const OPTIONAL_PATH_LENGTH: Limits = Limits::new([0.0, MAX_PATH as f64], [0.0, MAX_PATH as f64], "").whole();
 /// Voxels along the longest side of a model; 0 leaves the choice to the model.
 pub const VOXELS: Limits = Limits::new([0.0, 512.0], [0.0, isolith_bricks::RESOLUTIONS[1] as f64], "").whole();
+/// Voxels along the longest side of a baked group; 0 does not bake it.
+pub const BAKED_VOXELS: Limits = VOXELS;
 /// Size of a voxel of a model; 0 for none.
 pub const VOXEL_SIZE: Limits = Limits::new([0.0, 0.05], [0.0, 1e3], "m");
 /// Times within an animation clip.

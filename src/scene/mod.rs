@@ -22,6 +22,7 @@ mod animation;
 mod attached;
 mod attachment;
 mod axis;
+mod baked;
 pub mod check;
 mod decode_budget;
 mod display;
@@ -47,6 +48,7 @@ mod modifier;
 mod node;
 mod node_id;
 mod operator;
+mod packed;
 mod param_path;
 mod params;
 mod presets;
@@ -84,7 +86,8 @@ pub use model_file::ModelFile;
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeKind, Object};
 pub use node_id::NodeId;
-pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
+pub use operator::{Blend, BlendKernel, BlendOverride, Operation, Operator, RadiusUnit};
+pub use packed::{PACKED_ENDINGS, PackedFiles};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,

@@ -5,14 +5,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::limits::{
-    APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS,
-    UNIT, WEIGHT,
+    APERTURE, BAKED_VOXELS, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION,
+    SCALE, THICKNESS, UNIT, WEIGHT,
 };
 use super::node_id::NodeId;
 use super::params::{param_struct, param_table};
 use super::{
     Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MarchSettings, MaterialId, Modifier, ModifierSlot,
-    Operator, Shape,
+    Operation, Operator, Shape,
 };
 use isolith_geometry::Transform;
 
@@ -30,13 +30,17 @@ pub struct Node {
     pub visible: bool,
     /// The viewport neither selects nor changes locked nodes.
     pub locked: bool,
-    /// Subtracted from what precedes it in its group instead of joined; objects and groups only.
-    pub negative: bool,
+    /// What it does to those before it in its group; only objects and groups do something else than
+    /// [`Operation::Add`].
+    pub operation: Operation,
     /// How it blends with its siblings; objects and groups only.
     pub blend_override: BlendOverride,
     /// Siblings with which it does not blend; it holds in both directions. Ids of other nodes have no effect. Objects
     /// and groups only.
     pub apart: Vec<NodeId>,
+    /// The set of linked objects to which it belongs: they share shape and material, and each keeps its own place, role,
+    /// modifiers and dynamics. Objects only.
+    pub linked: Option<u64>,
     /// Parent from local.
     pub transform: Transform,
     /// How often an instancer takes it as the type of a copy, in relation to its siblings; children of instancers only.
@@ -54,7 +58,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// A visible, unlocked, positive node at the origin. [`super::Scene::insert`] assigns its id.
+    /// A visible, unlocked, added node at the origin. [`super::Scene::insert`] assigns its id.
     pub fn new(name: impl Into<String>, kind: NodeKind) -> Self {
         Self {
             id: NodeId(0),
@@ -62,9 +66,10 @@ impl Node {
             name: name.into(),
             visible: true,
             locked: false,
-            negative: false,
+            operation: Operation::Add,
             blend_override: BlendOverride::Inherit,
             apart: Vec::new(),
+            linked: None,
             transform: Transform::IDENTITY,
             weight: 1.0,
             dynamics: Vec::new(),
@@ -92,9 +97,15 @@ impl Node {
         self
     }
 
-    /// The same node, subtracted instead of joined.
-    pub fn negative(mut self) -> Self {
-        self.negative = true;
+    /// The same node, subtracted instead of added.
+    pub fn subtracted(mut self) -> Self {
+        self.operation = Operation::Subtract;
+        self
+    }
+
+    /// The same node, intersected instead of added.
+    pub fn intersected(mut self) -> Self {
+        self.operation = Operation::Intersect;
         self
     }
 
@@ -114,6 +125,12 @@ impl Node {
     pub fn weighted(mut self, weight: f64) -> Self {
         self.weight = weight;
         self
+    }
+
+    /// Whether it is joined by the operator of its group; others act on what stands before them and need something
+    /// there.
+    pub fn adds(&self) -> bool {
+        self.operation == Operation::Add
     }
 
     /// The same node, marched in this manner.
@@ -205,6 +222,10 @@ param_struct! {
         /// How far a morph has come, from 0, the first child, to 1, the next.
         #[serde(default = "half", skip_serializing_if = "is_half")]
         share: f64 = half(), UNIT;
+        /// Voxels along the longest side of bricks that are drawn in place of the content, quicker where it is made of
+        /// much; 0 for none.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        bake: f64 = 0.0, BAKED_VOXELS.fixed().labeled("Bake resolution");
     }
 }
 
@@ -250,7 +271,7 @@ impl Group {
 
     /// A group with the default width, depth and share.
     pub const fn new(operator: Operator, blend: Blend) -> Self {
-        Self { operator, blend, width: usual_width(), depth: usual_depth(), share: half() }
+        Self { operator, blend, width: usual_width(), depth: usual_depth(), share: half(), bake: 0.0 }
     }
 }
 
@@ -323,8 +344,8 @@ param_table! { Node {
     visible: bool = true, NO_LIMITS.fixed();
     /// Protected from selection and change in the viewport.
     locked: bool = false, NO_LIMITS.fixed();
-    /// Cut away from what stands before it in its group, instead of joined; objects and groups only.
-    negative: bool = false, NO_LIMITS.fixed();
+    /// What the node does to those before it in its group; objects and groups only.
+    operation: Operation = Operation::Add, NO_LIMITS.fixed();
     /// How this node blends with its siblings; objects and groups only.
     blend_override as "joining": BlendOverride = BlendOverride::Inherit, NO_LIMITS.labeled("Blend");
     /// How often an instancer takes it as the type of a copy, in relation to its siblings; children of instancers only.

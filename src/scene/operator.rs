@@ -117,6 +117,51 @@ impl Operator {
     }
 }
 
+/// What a node does to those before it in its group.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Operation {
+    /// It is joined by the operator of its group.
+    #[default]
+    Add,
+    /// It is cut away.
+    Subtract,
+    /// What is outside of it is cut away.
+    Intersect,
+}
+
+impl Operation {
+    /// Every operation, in the order of the user interface.
+    pub const ALL: [Self; 3] = [Self::Add, Self::Subtract, Self::Intersect];
+
+    /// Display name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Add => "Add",
+            Self::Subtract => "Subtract",
+            Self::Intersect => "Intersect",
+        }
+    }
+
+    /// The help text.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Add => "Joined by its group's operator",
+            Self::Subtract => "Cut away from what stands before it",
+            Self::Intersect => "Keeps of what stands before it only what is inside of it",
+        }
+    }
+
+    /// The operator that joins a node to those before it in a group of this operator.
+    pub fn in_group(self, operator: Operator) -> Operator {
+        match self {
+            Self::Add => operator,
+            Self::Subtract => Operator::Difference,
+            Self::Intersect => Operator::Intersection,
+        }
+    }
+}
+
 /// The curve by which a blend rounds or cuts the edge. All are convex combinations of the operands, so the
 /// field stays safe to step by, and all give the same greatest thickening at equal radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -240,6 +285,7 @@ impl RadiusUnit {
 }
 
 choices!(Operator);
+choices!(Operation);
 choices!(BlendKernel);
 choices!(RadiusUnit);
 nested_params!(Blend);

@@ -8,7 +8,9 @@ use glam::DAffine3;
 
 use super::image_budget::{self, ImageHolders};
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
-use super::{Animation, DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
+use super::{
+    Animation, DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, PackedFiles, SceneError,
+};
 
 /// A scene.
 ///
@@ -29,6 +31,8 @@ pub struct Scene {
     pub display: DisplaySettings,
     /// Its parameters that change with time. Their tracks follow from [`Scene::set_tracks`].
     pub animation: Animation,
+    /// The files that travel within it.
+    pub packed: PackedFiles,
 }
 
 impl PartialEq for Scene {
@@ -41,6 +45,7 @@ impl PartialEq for Scene {
             && self.environment == other.environment
             && self.display == other.display
             && self.animation == other.animation
+            && self.packed == other.packed
             && same(&self.materials, &other.materials)
             && same(&self.nodes, &other.nodes)
     }
@@ -64,6 +69,7 @@ impl Scene {
             environment: Environment::default(),
             display: DisplaySettings::default(),
             animation: Animation::default(),
+            packed: PackedFiles::default(),
         }
     }
 
@@ -128,6 +134,16 @@ impl Scene {
     /// The id of the next new node.
     pub fn next_id(&self) -> u64 {
         self.next_id
+    }
+
+    /// The number of a new set of linked objects.
+    pub fn next_link(&self) -> u64 {
+        self.nodes.iter().filter_map(|node| node.linked).max().unwrap_or(0) + 1
+    }
+
+    /// The objects of a set of linked objects.
+    pub fn linked(&self, link: u64) -> impl Iterator<Item = &Arc<Node>> {
+        self.nodes.iter().filter(move |node| node.linked == Some(link))
     }
 
     /// The node with this id.

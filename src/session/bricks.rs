@@ -1,34 +1,60 @@
-//! The models of a scene as distance bricks. A job makes the missing ones, one model at a time on all cores; those of a
-//! changed file are made again while the old ones are shown.
+//! The models and baked groups of a scene as distance bricks. A job makes the missing ones, one at a time on all cores;
+//! those of a changed file are made again while the old ones are shown.
 
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::path::PathBuf;
 use std::sync::{Arc, Weak};
 
 use super::brick_cache::BrickCache;
+use super::group_content::GroupContent;
 use super::notice::{Notice, NoticeLevel};
-use isolith_bricks::{BrickError, Bricks};
+use isolith_bricks::{BrickError, Bricks, ContentKey};
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
 use isolith_mesh::{MeshLibrary, ModelPose, TriangleMesh, bricks_key, usual_resolution, voxel_for, voxelized};
 
-/// A model in a pose, and the size of its voxels.
+/// What bricks are made of.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum BrickSubject {
+    /// A model in a pose.
+    Model(ModelPose),
+    /// The content of a group.
+    Group(Arc<GroupContent>),
+}
+
+impl BrickSubject {
+    /// The name for the user.
+    fn name(&self) -> &str {
+        match self {
+            Self::Model(pose) => &pose.path,
+            Self::Group(content) => &content.name,
+        }
+    }
+
+    /// Whether bricks of the other may be shown while those of this one are made.
+    fn is_like(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::Model(own), Self::Model(other)) if own.path == other.path)
+    }
+}
+
+/// What bricks are made of, and the size of their voxels.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ModelKey {
-    /// The model.
-    pub pose: ModelPose,
-    /// Voxels along the longest side; 0 for the usual number.
+pub struct BrickKey {
+    /// The model or group.
+    pub subject: BrickSubject,
+    /// Voxels along the longest side; 0 for the usual number of a model.
     pub resolution: f64,
     /// The size of a voxel in meters, which goes before the resolution; 0 for none.
     pub voxel: f64,
 }
 
 // Its numbers are finite.
-impl Eq for ModelKey {}
+impl Eq for BrickKey {}
 
-impl Hash for ModelKey {
+impl Hash for BrickKey {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.pose.hash(state);
+        self.subject.hash(state);
         // Equal numbers have equal bits, but for the two zeros.
         [self.resolution, self.voxel].map(|v| (v + 0.0).to_bits()).hash(state);
     }
@@ -37,16 +63,18 @@ impl Hash for ModelKey {
 /// Bricks, or the reason for the user why there are none.
 pub type BrickResult = Result<Arc<Bricks>, String>;
 
-/// The bricks of the models that a scene names.
+/// The bricks that a scene needs.
 #[derive(Debug, Default)]
 pub struct BrickLibrary {
     folder: Option<PathBuf>,
-    known: HashMap<ModelKey, KnownBricks>,
+    known: HashMap<BrickKey, KnownBricks>,
     making: Option<Making>,
     revision: u64,
     notices: Vec<Notice>,
     /// Whether a cache that cannot be written was reported.
     is_cache_told: bool,
+    /// The meshes whose remarks were reported, by path: the bricks of coarser voxels repeat them.
+    told: HashMap<String, Weak<TriangleMesh>>,
 }
 
 #[derive(Debug)]
@@ -59,7 +87,7 @@ struct KnownBricks {
 
 #[derive(Debug)]
 struct Making {
-    key: ModelKey,
+    key: BrickKey,
     mesh: Weak<TriangleMesh>,
     job: Job<BrickReply>,
 }
@@ -88,15 +116,15 @@ impl BrickLibrary {
         }
     }
 
-    /// The bricks of a model; `None` while they are being made.
-    pub fn get(&self, key: &ModelKey) -> Option<BrickResult> {
+    /// The bricks of a model or group; `None` while they are being made.
+    pub fn get(&self, key: &BrickKey) -> Option<BrickResult> {
         self.known.get(key).map(|known| known.result.clone())
     }
 
     /// The same; or while they are being made those of the same file in another pose or of another size.
-    pub fn nearest(&self, key: &ModelKey) -> Option<BrickResult> {
+    pub fn nearest(&self, key: &BrickKey) -> Option<BrickResult> {
         let other =
-            || self.known.iter().find(|(other, known)| other.pose.path == key.pose.path && known.result.is_ok());
+            || self.known.iter().find(|(other, known)| other.subject.is_like(&key.subject) && known.result.is_ok());
         self.get(key).or_else(|| other().map(|(_, known)| known.result.clone()))
     }
 
@@ -118,7 +146,7 @@ impl BrickLibrary {
     /// Starts making what is missing of these, forgets all others, and takes over what was made. The meshes are those
     /// that were read so far; a model is made once it was read, and again once it was read again. Called once a frame.
     /// Returns whether anything is new.
-    pub fn follow(&mut self, jobs: &Jobs, keys: &[ModelKey], meshes: &MeshLibrary) -> bool {
+    pub fn follow(&mut self, jobs: &Jobs, keys: &[BrickKey], meshes: &MeshLibrary) -> bool {
         let before = self.revision;
         self.take_made();
         if self.making.as_ref().is_some_and(|making| !keys.contains(&making.key)) {
@@ -127,26 +155,28 @@ impl BrickLibrary {
         self.forget_all_but(keys);
         self.take_refusals(keys, meshes);
         if self.making.is_none()
-            && let Some((key, mesh)) = keys.iter().find_map(|key| Some((key, self.missing(key, meshes)?)))
+            && let Some((key, source)) = keys.iter().find_map(|key| Some((key, self.missing(key, meshes)?)))
         {
-            let task = Task::new(format!("Making bricks of {}", key.pose.path));
-            let (own, cache, of) = (key.clone(), BrickCache::new(self.folder.as_deref()), mesh.clone());
-            let job = jobs.start(task, move |task| make(&of, &own, &cache, task));
-            self.making = Some(Making { key: key.clone(), mesh: Arc::downgrade(&mesh), job });
+            let task = Task::new(format!("Making bricks of {}", key.subject.name()));
+            let (own, cache, mesh) = (key.clone(), BrickCache::new(self.folder.as_deref()), source.mesh());
+            let job = jobs.start(task, move |task| make(&source, &own, &cache, task));
+            self.making = Some(Making { key: key.clone(), mesh, job });
         }
         self.revision != before
     }
 
     /// Makes all of these at once, and reads their models before; false if the task was canceled.
-    pub fn make_all(&mut self, keys: &[ModelKey], meshes: &mut MeshLibrary, task: &Task) -> bool {
+    pub fn make_all(&mut self, keys: &[BrickKey], meshes: &mut MeshLibrary, task: &Task) -> bool {
         task.set_stage("bricks");
         let cache = BrickCache::new(self.folder.as_deref());
         for key in keys {
-            // The library keeps the errors of those that cannot be read.
-            let _ = meshes.get(&key.pose);
-            if let Some(mesh) = self.missing(key, meshes) {
-                let reply = make(&mesh, key, &cache, task);
-                self.take(key.clone(), Arc::downgrade(&mesh), reply);
+            if let BrickSubject::Model(pose) = &key.subject {
+                // The library keeps the errors of those that cannot be read.
+                let _ = meshes.get(pose);
+            }
+            if let Some(source) = self.missing(key, meshes) {
+                let reply = make(&source, key, &cache, task);
+                self.take(key.clone(), source.mesh(), reply);
             }
             if task.is_canceled() {
                 return false;
@@ -157,17 +187,24 @@ impl BrickLibrary {
         true
     }
 
-    /// The mesh of a model whose bricks are not made of it.
-    fn missing(&self, key: &ModelKey, meshes: &MeshLibrary) -> Option<Arc<TriangleMesh>> {
-        let mesh = meshes.known(&key.pose)?.as_ref().ok()?;
-        let is_made = self.known.get(key).is_some_and(|known| known.mesh.as_ptr() == Arc::as_ptr(mesh));
-        (!is_made).then(|| mesh.clone())
+    /// What bricks are to be made of, if they are not made of it.
+    fn missing(&self, key: &BrickKey, meshes: &MeshLibrary) -> Option<BrickSource> {
+        let known = self.known.get(key);
+        match &key.subject {
+            BrickSubject::Model(pose) => {
+                let mesh = meshes.known(pose)?.as_ref().ok()?;
+                let is_made = known.is_some_and(|known| known.mesh.as_ptr() == Arc::as_ptr(mesh));
+                (!is_made).then(|| BrickSource::Mesh(mesh.clone()))
+            }
+            BrickSubject::Group(content) => known.is_none().then(|| BrickSource::Group(content.clone())),
+        }
     }
 
     /// Records the errors of models that cannot be read.
-    fn take_refusals(&mut self, keys: &[ModelKey], meshes: &MeshLibrary) {
+    fn take_refusals(&mut self, keys: &[BrickKey], meshes: &MeshLibrary) {
         for key in keys {
-            let Some(Err(error)) = meshes.known(&key.pose) else { continue };
+            let BrickSubject::Model(pose) = &key.subject else { continue };
+            let Some(Err(error)) = meshes.known(pose) else { continue };
             let result = Err(error.to_string());
             if self.get(key).as_ref() != Some(&result) {
                 self.known.insert(key.clone(), KnownBricks { mesh: Weak::new(), result, is_canceled: false });
@@ -177,10 +214,11 @@ impl BrickLibrary {
     }
 
     /// Forgets what nobody asks for, but for what stands in for bricks that are not made yet.
-    fn forget_all_but(&mut self, keys: &[ModelKey]) {
+    fn forget_all_but(&mut self, keys: &[BrickKey]) {
         let count = self.known.len();
-        let waits = |path: &str| keys.iter().any(|key| key.pose.path == path && !self.known.contains_key(key));
-        let standing: Vec<ModelKey> = self.known.keys().filter(|key| waits(&key.pose.path)).cloned().collect();
+        let waits =
+            |own: &BrickKey| keys.iter().any(|key| key.subject.is_like(&own.subject) && !self.known.contains_key(key));
+        let standing: Vec<BrickKey> = self.known.keys().filter(|key| waits(key)).cloned().collect();
         self.known.retain(|key, _| keys.contains(key) || standing.contains(key));
         self.revision += u64::from(self.known.len() != count);
     }
@@ -196,10 +234,15 @@ impl BrickLibrary {
         self.take(key, mesh, reply);
     }
 
-    fn take(&mut self, key: ModelKey, mesh: Weak<TriangleMesh>, reply: BrickReply) {
-        let path = key.pose.path.clone();
-        let told = reply.remarks.iter().map(|remark| format!("{path} {remark}"));
-        let mut told: Vec<String> = told.collect();
+    fn take(&mut self, key: BrickKey, mesh: Weak<TriangleMesh>, reply: BrickReply) {
+        let path = key.subject.name().to_owned();
+        let mut told: Vec<String> = Vec::new();
+        if !reply.remarks.is_empty() {
+            let before = self.told.insert(path.clone(), mesh.clone());
+            if before.is_none_or(|before| !before.ptr_eq(&mesh)) {
+                told.extend(reply.remarks.iter().map(|remark| format!("{path} {remark}")));
+            }
+        }
         if let Some(reason) = reply.unkept.filter(|_| !std::mem::replace(&mut self.is_cache_told, true)) {
             told.push(format!("Bricks of models are kept in memory only: {reason}"));
         }
@@ -215,20 +258,59 @@ impl BrickLibrary {
     }
 
     /// Keeps bricks of an earlier version of the model, or none for this reason.
-    fn keep_old_or(&mut self, key: ModelKey, mesh: Weak<TriangleMesh>, reason: String, is_canceled: bool) {
+    fn keep_old_or(&mut self, key: BrickKey, mesh: Weak<TriangleMesh>, reason: String, is_canceled: bool) {
         let old = self.known.get(&key).and_then(|known| known.result.clone().ok());
         if old.is_some() {
-            let text = format!("{} is shown as it was before: {reason}", key.pose.path);
+            let text = format!("{} is shown as it was before: {reason}", key.subject.name());
             self.notices.push(Notice::new(NoticeLevel::Warning, text));
         }
-        let result = old.ok_or_else(|| format!("{}: {reason}", key.pose.path));
+        let result = old.ok_or_else(|| format!("{}: {reason}", key.subject.name()));
         self.known.insert(key, KnownBricks { mesh, result, is_canceled });
         self.revision += 1;
     }
 }
 
-/// Reads the bricks of a mesh from the cache, or makes them.
-fn make(mesh: &TriangleMesh, key: &ModelKey, cache: &BrickCache, task: &Task) -> BrickReply {
+/// What bricks are made of, read.
+enum BrickSource {
+    Mesh(Arc<TriangleMesh>),
+    Group(Arc<GroupContent>),
+}
+
+impl BrickSource {
+    fn mesh(&self) -> Weak<TriangleMesh> {
+        if let Self::Mesh(mesh) = self { Arc::downgrade(mesh) } else { Weak::new() }
+    }
+}
+
+/// Reads bricks from the cache, or makes them.
+fn make(source: &BrickSource, key: &BrickKey, cache: &BrickCache, task: &Task) -> BrickReply {
+    match source {
+        BrickSource::Mesh(mesh) => of_mesh(mesh, key, cache, task),
+        BrickSource::Group(content) => of_group(content, key, cache, task),
+    }
+}
+
+fn of_group(content: &GroupContent, key: &BrickKey, cache: &BrickCache, task: &Task) -> BrickReply {
+    let (is_known, remarks) = (Cell::new(false), RefCell::new(Vec::new()));
+    let known = |content: ContentKey| match cache.load(content) {
+        Ok(bricks) => {
+            is_known.set(bricks.is_some());
+            bricks
+        }
+        Err(reason) => {
+            remarks.borrow_mut().push(format!("is made into bricks again: their file {reason}"));
+            None
+        }
+    };
+    let made = content.bricks([key.resolution, key.voxel], &known, task);
+    let unkept = match &made {
+        Ok((content, bricks)) if !is_known.get() => cache.store(*content, bricks).err(),
+        _ => None,
+    };
+    BrickReply { result: made.map(|(_, bricks)| Arc::new(bricks)), remarks: remarks.into_inner(), unkept }
+}
+
+fn of_mesh(mesh: &TriangleMesh, key: &BrickKey, cache: &BrickCache, task: &Task) -> BrickReply {
     let resolution = if key.resolution > 0.0 { key.resolution } else { usual_resolution(mesh) };
     let voxel = if key.voxel > 0.0 { key.voxel } else { voxel_for(&mesh.bounds, resolution) };
     let content = bricks_key(mesh, voxel);
@@ -263,8 +345,8 @@ mod tests {
 
     const MODEL: &str = "models/suzanne.glb";
 
-    fn key(resolution: f64) -> ModelKey {
-        ModelKey { pose: MODEL.into(), resolution, voxel: 0.0 }
+    fn key(resolution: f64) -> BrickKey {
+        BrickKey { subject: BrickSubject::Model(MODEL.into()), resolution, voxel: 0.0 }
     }
 
     /// A folder with a model, and both libraries.
@@ -277,7 +359,7 @@ mod tests {
         (folder, meshes, bricks)
     }
 
-    fn wait(bricks: &mut BrickLibrary, jobs: &Jobs, keys: &[ModelKey], meshes: &MeshLibrary) {
+    fn wait(bricks: &mut BrickLibrary, jobs: &Jobs, keys: &[BrickKey], meshes: &MeshLibrary) {
         let started = Instant::now();
         while {
             bricks.follow(jobs, keys, meshes);
@@ -352,9 +434,12 @@ mod tests {
         bricks.follow(&jobs, &keys, &meshes);
         assert!(bricks.is_under_way());
         // Too fine, and no such file.
-        let fine = [ModelKey { voxel: 1e-5, ..key(0.0) }, ModelKey { pose: "none.glb".into(), ..key(64.0) }];
+        let fine = [
+            BrickKey { voxel: 1e-5, ..key(0.0) },
+            BrickKey { subject: BrickSubject::Model("none.glb".into()), ..key(64.0) },
+        ];
         assert!(bricks.make_all(&fine, &mut meshes, &Task::new("Making")));
-        let reason = |key: &ModelKey| bricks.get(key).unwrap().unwrap_err();
+        let reason = |key: &BrickKey| bricks.get(key).unwrap().unwrap_err();
         assert!(reason(&fine[0]).contains("1024") && reason(&fine[0]).contains(MODEL), "{}", reason(&fine[0]));
         assert!(reason(&fine[1]).contains("none.glb"));
         // A folder that cannot be written: the bricks are there, and it is said once.

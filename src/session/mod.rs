@@ -9,7 +9,9 @@
 //! | `models` | the models that it names, read in the background and again when their files change |
 //! | `bricks` | models as distance bricks, made in the background |
 //! | `brick_cache` | their files |
+//! | `group_content` | what groups hold that are drawn from bricks |
 //! | `model_fields` | the shapes that are made of them |
+//! | `packing` | the files of models within a scene, and beside it again |
 //! | `notice` | messages of a session |
 //! | `render_order`, `frames` | orders to render pictures into files, by a dialog or from the command line |
 //! | `scene_cost` | what a picture takes, as measured |
@@ -19,10 +21,12 @@ mod arrays;
 mod brick_cache;
 mod bricks;
 mod frames;
+mod group_content;
 mod model_fields;
 mod models;
 mod notice;
 mod open;
+mod packing;
 mod prepare;
 mod render_order;
 mod scene_cost;
@@ -39,7 +43,8 @@ pub use model_fields::{ModelFields, pose_of};
 use models::Models;
 pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};
-pub use prepare::PreparedScene;
+pub use packing::{has_unpacked, pack, unpack};
+pub use prepare::{PreparedScene, library_of};
 pub use render_order::{
     DEFAULT_SAMPLES, DEFAULT_SIZE, MAX_SAMPLES, MAX_SIDE, Moments, RenderOrder, RenderSettings, check_size, ending,
 };
@@ -78,6 +83,7 @@ impl SceneSession {
     pub fn adopt(&mut self, opened: Opened) -> Document {
         let Opened { document, prepared } = opened;
         self.reset(document.path().and_then(folder_of));
+        self.models.set_packed(document.resting().packed.table());
         match prepared {
             Ok(PreparedScene { flattener, flat, library, .. }) => {
                 self.models.take_new(library);
@@ -96,8 +102,9 @@ impl SceneSession {
 
     /// Follows the document, and takes over the results of jobs. Called once a frame. Returns whether anything is new.
     pub fn follow(&mut self, document: &Document) -> bool {
+        self.models.set_packed(document.resting().packed.table());
         let requests = document.resting().model_requests();
-        self.fields.follow(&self.jobs, &requests, self.models.library());
+        self.fields.follow(&self.jobs, document.resting(), self.models.library());
         let has_arrays = self.arrays.follow(&self.jobs, document, &self.fields);
         let poses: Vec<ModelPose> = requests.iter().map(pose_of).collect();
         let has_models = self.models.follow(&self.jobs, self.arrays.scene(), &poses, has_arrays);

@@ -1,22 +1,24 @@
-//! The shapes of a scene that are made of models, with bricks in voxels of several sizes.
+//! The shapes of a scene that are made of models, and its baked groups, with bricks in voxels of several sizes.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::bricks::{BrickLibrary, ModelKey};
+use super::bricks::{BrickKey, BrickLibrary, BrickSubject};
+use super::group_content::{GroupContent, GroupContents};
 use super::notice::Notice;
 use isolith_bricks::BrickLevels;
 use isolith_jobs::{Jobs, Task};
 use isolith_mesh::{ClipTime, MeshLibrary, ModelPose};
 use isolith_scene::{ModelRequest, NodeId, NodeKind, Scene};
 
-/// The models of a scene as fields.
+/// The models and baked groups of a scene as fields.
 #[derive(Debug, Default)]
 pub struct ModelFields {
     library: BrickLibrary,
-    /// The bricks of each request, by those of the finest voxels.
-    levels: HashMap<ModelKey, Arc<BrickLevels>>,
+    groups: GroupContents,
+    /// The bricks of each model and group, by those of the finest voxels.
+    levels: HashMap<BrickKey, Arc<BrickLevels>>,
     revision: u64,
 }
 
@@ -53,61 +55,91 @@ impl ModelFields {
 
     /// Starts making what is missing, and takes over what was made. Returns whether scenes
     /// get anything else than before.
-    pub fn follow(&mut self, jobs: &Jobs, requests: &[ModelRequest], meshes: &MeshLibrary) -> bool {
-        let keys = self.keys(requests);
-        self.library.follow(jobs, &keys, meshes) && self.assemble(requests)
+    pub fn follow(&mut self, jobs: &Jobs, scene: &Scene, meshes: &MeshLibrary) -> bool {
+        self.groups.follow(scene);
+        let wanted = self.wanted(scene);
+        let is_new = self.library.follow(jobs, &self.keys(&wanted), meshes);
+        is_new && self.assemble(&wanted)
     }
 
     /// Makes all that is missing at once; false if the task was canceled.
-    pub fn make_all(&mut self, requests: &[ModelRequest], meshes: &mut MeshLibrary, task: &Task) -> bool {
-        let mut keys = self.keys(requests);
+    pub fn make_all(&mut self, scene: &Scene, meshes: &mut MeshLibrary, task: &Task) -> bool {
+        self.groups.follow(scene);
+        let wanted = self.wanted(scene);
+        let mut keys = self.keys(&wanted);
         loop {
             if !self.library.make_all(&keys, meshes, task) {
                 return false;
             }
-            let more = self.keys(requests);
+            let more = self.keys(&wanted);
             if more == keys {
-                self.assemble(requests);
+                self.assemble(&wanted);
                 return true;
             }
             keys = more;
         }
     }
 
-    /// The scene with the bricks of its models, where they are made.
+    /// The scene with the bricks of its models and groups, where they are made.
     pub fn filled<'a>(&self, scene: &'a Scene) -> Cow<'a, Scene> {
         if self.levels.is_empty() {
             return Cow::Borrowed(scene);
         }
-        Cow::Owned(scene.with_bricks(&|request| self.levels.get(&key_of(request)).cloned()))
+        let filled = scene.with_bricks(&|request| self.levels.get(&key_of(request)).cloned());
+        if self.groups.is_empty() {
+            return Cow::Owned(filled);
+        }
+        let made = self.groups.of(scene).filter_map(|(index, resolution, content)| {
+            let key = key_of_group(content.as_ref().ok()?, resolution);
+            Some((index, self.levels.get(&key)?.clone()))
+        });
+        Cow::Owned(filled.with_baked(&made.collect()))
     }
 
-    /// The nodes whose bricks cannot be made, and why.
+    /// The nodes whose bricks cannot be made, why, and what is shown instead.
     pub fn problems<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (NodeId, String)> + 'a {
-        scene.nodes().iter().filter_map(|node| {
+        let groups = self.groups.of(scene).filter_map(|(index, resolution, content)| {
+            let reason = match content {
+                Ok(content) => self.library.get(&key_of_group(content, resolution))?.err()?,
+                Err(reason) => reason.clone(),
+            };
+            Some((scene.nodes()[index].id, format!("is not baked: {reason}")))
+        });
+        groups.chain(scene.nodes().iter().filter_map(|node| {
             let NodeKind::Object(object) = &node.kind else { return None };
             let key = key_of(&object.shape.model_request()?);
-            Some((node.id, self.library.get(&key)?.err()?))
-        })
+            let reason = self.library.get(&key)?.err()?;
+            Some((node.id, format!("is shown as a placeholder: {reason}")))
+        }))
     }
 
-    /// What is wanted: the finest voxels of each request, and behind them the next larger ones of those that are made.
-    fn keys(&self, requests: &[ModelRequest]) -> Vec<ModelKey> {
-        let mut keys: Vec<ModelKey> = requests.iter().map(key_of).collect();
-        for request in requests {
-            keys.extend(self.chain(&key_of(request)).1);
+    /// The finest bricks that a scene asks for.
+    fn wanted(&self, scene: &Scene) -> Vec<BrickKey> {
+        let mut keys: Vec<BrickKey> = scene.model_requests().iter().map(key_of).collect();
+        for (_, resolution, content) in self.groups.of(scene) {
+            let key = content.as_ref().ok().map(|content| key_of_group(content, resolution));
+            keys.extend(key.filter(|key| !keys.contains(key)));
         }
         keys
     }
 
-    /// The bricks of a request that are made so far, the finest first, and the keys of all but those.
-    fn chain(&self, finest: &ModelKey) -> (Vec<Arc<isolith_bricks::Bricks>>, Vec<ModelKey>) {
+    /// What is to be made: the finest voxels of each, and behind them the next larger ones of those that are made.
+    fn keys(&self, wanted: &[BrickKey]) -> Vec<BrickKey> {
+        let mut keys = wanted.to_vec();
+        for key in wanted {
+            keys.extend(self.chain(key).1);
+        }
+        keys
+    }
+
+    /// The bricks that are made so far, the finest first, and the keys of all but those.
+    fn chain(&self, finest: &BrickKey) -> (Vec<Arc<isolith_bricks::Bricks>>, Vec<BrickKey>) {
         let (mut levels, mut keys) = (Vec::new(), Vec::new());
         let mut next = self.library.nearest(finest).and_then(Result::ok);
         while let Some(bricks) = next.take() {
             levels.push(bricks);
             let Some(voxel) = BrickLevels::coarser(&levels[levels.len() - 1], levels.len()) else { break };
-            let key = ModelKey { pose: finest.pose.clone(), resolution: 0.0, voxel };
+            let key = BrickKey { subject: finest.subject.clone(), resolution: 0.0, voxel };
             next = self.library.get(&key).and_then(Result::ok);
             keys.push(key);
         }
@@ -115,14 +147,13 @@ impl ModelFields {
     }
 
     /// Puts together what was made. Returns whether anything is new.
-    fn assemble(&mut self, requests: &[ModelRequest]) -> bool {
+    fn assemble(&mut self, wanted: &[BrickKey]) -> bool {
         let mut all = HashMap::new();
-        for request in requests {
-            let key = key_of(request);
-            let (levels, keys) = self.chain(&key);
+        for key in wanted {
+            let (levels, keys) = self.chain(key);
             // Shown once it is complete: far from the surface it would be a bound of little use.
             let is_complete = levels.len() > keys.len() || keys.is_empty();
-            let old = self.levels.get(&key);
+            let old = self.levels.get(key);
             let same = |old: &&Arc<BrickLevels>| {
                 old.all().len() == levels.len() && old.all().iter().zip(&levels).all(|(a, b)| Arc::ptr_eq(a, b))
             };
@@ -131,7 +162,7 @@ impl ModelFields {
                 None if is_complete => BrickLevels::new(levels).map(Arc::new),
                 None => None,
             };
-            all.extend(new.map(|new| (key, new)));
+            all.extend(new.map(|new| (key.clone(), new)));
         }
         let is_new = all.len() != self.levels.len()
             || all.iter().any(|(key, new)| self.levels.get(key).is_none_or(|old| !Arc::ptr_eq(old, new)));
@@ -148,6 +179,14 @@ pub fn pose_of(request: &ModelRequest) -> ModelPose {
     ModelPose { path: path.clone(), clip }
 }
 
-fn key_of(request: &ModelRequest) -> ModelKey {
-    ModelKey { pose: pose_of(request), resolution: request.resolution, voxel: request.voxel_size }
+fn key_of_group(content: &Arc<GroupContent>, resolution: f64) -> BrickKey {
+    BrickKey { subject: BrickSubject::Group(content.clone()), resolution, voxel: 0.0 }
+}
+
+fn key_of(request: &ModelRequest) -> BrickKey {
+    BrickKey {
+        subject: BrickSubject::Model(pose_of(request)),
+        resolution: request.resolution,
+        voxel: request.voxel_size,
+    }
 }

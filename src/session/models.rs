@@ -9,7 +9,7 @@ use super::notice::{Notice, NoticeLevel};
 use super::prepare::read_models;
 use isolith_field::{FlatMesh, FlatScene};
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
-use isolith_mesh::{MeshLibrary, ModelPose, ReloadOutcome, TriangleMesh, Watcher};
+use isolith_mesh::{MeshLibrary, ModelFileTable, ModelPose, ReloadOutcome, TriangleMesh, Watcher};
 use isolith_scene::NodeId;
 
 /// Loads the models and watches their files.
@@ -65,6 +65,15 @@ impl Models {
         if self.library.folder() != folder.as_deref() {
             self.reading = None;
             self.library.set_folder(folder);
+        }
+    }
+
+    /// Changes the files that the scene packs; forgets everything if they differ from the old ones.
+    pub fn set_packed(&mut self, packed: &Arc<ModelFileTable>) {
+        let before = self.library.revision();
+        self.library.set_packed(packed);
+        if self.library.revision() != before {
+            self.reading = None;
         }
     }
 

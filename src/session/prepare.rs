@@ -34,9 +34,9 @@ impl PreparedScene {
     /// # Errors
     /// The scene is beyond a limit.
     pub fn of(scene: &Scene, time: f64, folder: Option<PathBuf>, task: &Task) -> Result<Option<Self>, FlattenError> {
-        let mut library = MeshLibrary::new(folder.clone());
+        let mut library = library_of(scene, folder.clone());
         let mut fields = ModelFields::new(folder);
-        if !fields.make_all(&scene.model_requests(), &mut library, task) {
+        if !fields.make_all(scene, &mut library, task) {
             return Ok(None);
         }
         Self::with(scene, time, (library, fields), task)
@@ -52,7 +52,7 @@ impl PreparedScene {
         folder: Option<PathBuf>,
         task: &Task,
     ) -> Result<Option<Self>, FlattenError> {
-        Self::with(scene, time, (MeshLibrary::new(folder), ModelFields::default()), task)
+        Self::with(scene, time, (library_of(scene, folder), ModelFields::default()), task)
     }
 
     fn with(
@@ -67,13 +67,9 @@ impl PreparedScene {
         task.set_progress(FLATTENED);
         let poses: Vec<_> = flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
         let is_whole = read_models(&poses, &mut library, task, FLATTENED);
-        let refused = fields.problems(scene).filter_map(|(node, reason)| {
-            Some(Warning {
-                node,
-                name: scene.node(node)?.name.clone(),
-                reason: format!("is shown as a placeholder: {reason}"),
-            })
-        });
+        let refused = fields
+            .problems(scene)
+            .filter_map(|(node, reason)| Some(Warning { node, name: scene.node(node)?.name.clone(), reason }));
         let refused = refused.collect();
         Ok(is_whole.then_some(Self { flat, library, fields, refused, flattener }))
     }
@@ -95,6 +91,11 @@ impl PreparedScene {
         self.library.keep_poses(poses.iter());
         Ok(read_models(&poses, &mut self.library, task, 0.0))
     }
+}
+
+/// The library of a scene in a folder, with the files that the scene packs.
+pub fn library_of(scene: &Scene, folder: Option<PathBuf>) -> MeshLibrary {
+    MeshLibrary::new(folder).with_packed(scene.packed.table().clone())
 }
 
 /// Reads the models that the library lacks; false if the task was canceled. `start` is the progress of the task so far.

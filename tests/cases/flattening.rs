@@ -3,6 +3,7 @@
 mod empty;
 mod hostile;
 mod opening;
+mod operations;
 
 use std::path::PathBuf;
 

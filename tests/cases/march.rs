@@ -204,7 +204,7 @@ fn pockets_are_open_wherever_they_are_and_however_they_are_cut() {
     });
     // A negative child, and the intersection with the uncut part.
     is_open("negative", DVec3::ZERO, |out| {
-        let cutter = cuboid([0.8, 0.6 + out, 0.7]).at(DVec3::new(0.1, 0.2 + 0.5 * out, 0.0)).negative();
+        let cutter = cuboid([0.8, 0.6 + out, 0.7]).at(DVec3::new(0.1, 0.2 + 0.5 * out, 0.0)).subtracted();
         scene(group(Operator::Union, 0.0).rotated(turn()), [cuboid([2.0, 1.0, 1.9]), cutter])
     });
 }

@@ -4,8 +4,8 @@ use glam::{DAffine3, DQuat, DVec3};
 use isolith::field::eval::{field, gradient, surface};
 use isolith::field::{Component, FlatScene, flatten};
 use isolith::scene::{
-    Blend, BlendKernel, BlendOverride, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator,
-    RadiusUnit, Scene, ShapeKind,
+    Blend, BlendKernel, BlendOverride, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operation,
+    Operator, RadiusUnit, Scene, ShapeKind,
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
@@ -65,7 +65,11 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
         let mut factor = || random.range(0.4, 2.0) * random.pick(&[1.0, 1.0, -1.0]);
         node.transform.scale = DVec3::new(factor(), factor(), factor());
     }
-    node.negative = random.chance(0.2);
+    if random.chance(0.2) {
+        // Every fourth cut keeps what is inside; the sequence of random numbers stays.
+        node.operation =
+            if node.transform.translation.x.abs() < 0.2 { Operation::Intersect } else { Operation::Subtract };
+    }
     node.visible = !random.chance(0.08);
     if recipe.blends && parent.is_some() && random.chance(0.2) {
         node.blend_override = random.pick(&[BlendOverride::Hard, BlendOverride::Radius(0.1)]);
@@ -122,21 +126,25 @@ fn fold(scene: &Scene, parent: Option<NodeId>, operator: Operator, world: &DAffi
     for child in scene.children(parent) {
         let Some(holds) = solid(scene, child, world, p) else {
             // Otherwise the remaining children would apply to each other.
-            if so_far.is_none() && !child.negative && operator.needs_first() {
+            if so_far.is_none() && child.adds() && operator.needs_first() {
                 so_far = Some(false);
             }
             continue;
         };
-        so_far = match (so_far, child.negative, operator) {
+        so_far = match (so_far, child.operation, operator) {
             // A cut from the empty set is empty.
-            (None, true, _) => None,
-            (None, false, _) => Some(holds),
-            (Some(before), true, _) | (Some(before), false, Operator::Difference) => Some(before && !holds),
-            (Some(before), false, Operator::Union) => Some(before || holds),
-            (Some(before), false, Operator::Intersection) => Some(before && holds),
-            (Some(before), false, Operator::Xor) => Some(before != holds),
-            (Some(before), false, Operator::Paint) => Some(before),
-            (Some(_), false, other) => panic!("{other:?} is no operator on sets"),
+            (None, Operation::Subtract | Operation::Intersect, _) => None,
+            (None, Operation::Add, _) => Some(holds),
+            (Some(before), Operation::Subtract, _) | (Some(before), Operation::Add, Operator::Difference) => {
+                Some(before && !holds)
+            }
+            (Some(before), Operation::Add, Operator::Union) => Some(before || holds),
+            (Some(before), Operation::Intersect, _) | (Some(before), Operation::Add, Operator::Intersection) => {
+                Some(before && holds)
+            }
+            (Some(before), Operation::Add, Operator::Xor) => Some(before != holds),
+            (Some(before), Operation::Add, Operator::Paint) => Some(before),
+            (Some(_), Operation::Add, other) => panic!("{other:?} is no operator on sets"),
         };
     }
     so_far

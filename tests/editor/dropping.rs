@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use isolith::document::Document;
 use isolith::editor::Editor;
-use isolith::scene::{MeshNode, Node, NodeKind, Scene, Shape, ShapeKind};
+use isolith::scene::{MeshNode, Node, NodeKind, Operation, Scene, Shape, ShapeKind};
 
 use super::{click, open, open_in, press, row, scene, undo_all};
 use crate::settle::Settle;
@@ -133,7 +133,7 @@ fn a_missing_model_is_relinked_in_all_nodes_that_use_it() {
 fn what_is_cut_away_shows_as_a_ghost_while_it_is_selected() {
     let (mut scene, [group, ball, ..]) = scene();
     let mut cutter = Node::clone(scene.node(ball).unwrap());
-    cutter.negative = true;
+    cutter.operation = Operation::Subtract;
     scene.replace(cutter).unwrap();
     let mut harness = open(scene);
     let lines = |harness: &mut Harness<'_, Editor>, selected: Vec<isolith::scene::NodeId>| {

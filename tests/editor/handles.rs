@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::editor::Editor;
 use isolith::scene::{
-    Falloff, Group, Instancer, Lattice, Light, LightKind, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind,
+    Falloff, Group, Instancer, Lattice, Light, LightKind, Mask, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind,
 };
 
 use super::{open, press, shape, undo_all};
@@ -268,6 +268,25 @@ fn the_count_of_a_lattice_follows_the_pointer_in_whole_copies() {
     };
     let Lattice::Grid { counts, .. } = instancer.lattice else { panic!() };
     assert_eq!(counts, [5, 1, 3]);
+    assert_eq!(undo_all(&mut harness), 1, "one drag is one step");
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn the_distances_of_a_mask_follow_the_pointer() {
+    let mut grid = Instancer::grid([3, 1, 3], [1.0; 3]);
+    grid.masks = vec![Mask::Radius { inner: 0.8, outer: 1.6 }.into()];
+    let (mut harness, scene, id) = with(NodeKind::Instancer(Box::new(grid)));
+    let found = names(&harness);
+    assert!(found.contains(&"Inner (mask)".to_owned()) && found.contains(&"Outer (mask)".to_owned()), "{found:?}");
+    let from = handle(&harness, "Outer (mask)");
+    let end = drag(&mut harness, from, vec2(40.0, 0.0), Modifiers::NONE);
+    let NodeKind::Instancer(instancer) = harness.state().document().scene().node(id).unwrap().kind.clone() else {
+        panic!()
+    };
+    let Mask::Radius { inner, outer } = instancer.masks[0].mask else { panic!() };
+    assert!(inner == 0.8 && outer > 1.65, "{inner} {outer}");
+    assert!(handle(&harness, "Outer (mask)").distance(end) < 40.0);
     assert_eq!(undo_all(&mut harness), 1, "one drag is one step");
     assert_eq!(*harness.state().document().scene(), scene);
 }

@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isolith::document::Document;
 use isolith::editor::Editor;
-use isolith::scene::{Group, Light, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
+use isolith::scene::{Group, Light, Node, NodeId, NodeKind, Object, Operation, Scene, ShapeKind};
 
 use super::{open, open_in, press, scene};
 
@@ -13,9 +13,9 @@ fn long(letter: char) -> String {
     format!("Begin {} end", letter.to_string().repeat(120))
 }
 
-fn rename(scene: &mut Scene, id: NodeId, name: String, negative: bool) {
+fn rename(scene: &mut Scene, id: NodeId, name: String, operation: Operation) {
     let mut node = scene.node(id).unwrap().as_ref().clone();
-    (node.name, node.negative) = (name, negative);
+    (node.name, node.operation) = (name, operation);
     scene.replace(node).unwrap();
 }
 
@@ -26,8 +26,8 @@ fn viewport(harness: &Harness<'_, Editor>) -> egui::Rect {
 #[test]
 fn long_names_are_elided_in_the_tree() {
     let (mut scene, [_, ball, cube, _]) = scene();
-    rename(&mut scene, ball, long('x'), false);
-    rename(&mut scene, cube, long('y'), true);
+    rename(&mut scene, ball, long('x'), Operation::Add);
+    rename(&mut scene, cube, long('y'), Operation::Subtract);
     let harness = open(scene);
     let left = viewport(&harness).left();
     for name in [long('x'), long('y')] {

@@ -4,7 +4,7 @@ use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isolith::editor::Editor;
-use isolith::scene::{Node, NodeId, NodeKind, Object, Operator, Scene, ShapeKind};
+use isolith::scene::{Node, NodeId, NodeKind, Object, Operation, Operator, Scene, ShapeKind};
 
 use super::{field, open, pointer, press, row, scene, select, undo_all};
 
@@ -96,7 +96,7 @@ fn the_tree_scrolls_to_what_is_selected_elsewhere() {
 fn the_tree_lists_one_kind_and_what_holds_it() {
     let (mut scene, [_, ball, ..]) = scene();
     let mut cutter = Node::clone(scene.node(ball).unwrap());
-    cutter.negative = true;
+    cutter.operation = Operation::Subtract;
     scene.replace(cutter).unwrap();
     let mut harness = open(scene);
     let filter = |harness: &mut Harness<'_, Editor>, kind: &str| {

@@ -68,6 +68,7 @@ const FILE_OWNERS: &[&str] = &[
     "src/cli/",
     "src/gallery/write",
     "src/session/brick_cache",
+    "src/session/packing",
     "src/wgsl/disk",
 ];
 

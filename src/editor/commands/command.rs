@@ -24,6 +24,10 @@ pub enum Command {
     Reload,
     /// Reload the models of the scene.
     ReloadModels,
+    /// Store the files of the models in the scene.
+    PackFiles,
+    /// Write the files of the models beside the scene.
+    UnpackFiles,
     /// List recoverable work.
     Recover,
     /// Open the render dialog.
@@ -56,6 +60,12 @@ pub enum Command {
     Rename,
     /// Duplicate the selection.
     Duplicate,
+    /// Duplicate the selection so that objects share shape and material with their copies.
+    DuplicateLinked,
+    /// Take the selection out of its sets of linked objects.
+    Unlink,
+    /// Select what is linked with the selection.
+    SelectLinked,
     /// Delete the selection.
     Delete,
     /// Group the selection.
@@ -74,8 +84,10 @@ pub enum Command {
     RerollSeeds,
     /// Give the selected instancers, or a new one of the selection, ready-made settings.
     ApplyPreset(InstancerPreset),
-    /// Switch the selection between subtracted and joined.
-    ToggleNegative,
+    /// Switch the selection between subtracted and added.
+    ToggleSubtract,
+    /// Switch the selection between intersected and added.
+    ToggleIntersect,
     /// Select every node.
     SelectAll,
     /// Clear the selection.
@@ -144,6 +156,8 @@ pub enum Command {
     LockCamera,
     /// Toggle the safe areas in the frame of a camera.
     ToggleSafeAreas,
+    /// Show this many viewports: 1, 2 or 4.
+    SplitView(usize),
     /// Keep the view in this bookmark.
     SetBookmark(usize),
     /// Show the view of this bookmark.

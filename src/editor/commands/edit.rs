@@ -6,9 +6,9 @@ use egui_material_icons::icons::{
     ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CHANGE_HISTORY,
     ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON,
     ICON_HISTORY, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY,
-    ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LASSO_SELECT, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE,
-    ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP,
-    ICON_VIEW_IN_AR, ICON_VISIBILITY, ICON_VISIBILITY_LOCK, ICON_VISIBILITY_OFF,
+    ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LASSO_SELECT, ICON_LINK, ICON_LINK_OFF, ICON_LOCK, ICON_PLUMBING, ICON_REDO,
+    ICON_REMOVE_CIRCLE, ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM,
+    ICON_VERTICAL_ALIGN_TOP, ICON_VIEW_IN_AR, ICON_VISIBILITY, ICON_VISIBILITY_LOCK, ICON_VISIBILITY_OFF,
 };
 
 use super::arrange;
@@ -17,6 +17,7 @@ use super::info::{CommandInfo, Icon, Menu};
 use crate::instancer_edits::{can_instance, can_take_preset};
 use crate::mesh_conversion;
 use crate::seeds;
+use crate::selection::linked_in_selection;
 use crate::state::EditorState;
 use isolith_scene::{InstancerPreset, Operator};
 
@@ -73,6 +74,7 @@ fn history() -> Vec<CommandInfo> {
 
 fn structure() -> Vec<CommandInfo> {
     let along = "A copy of the selection, moved, turned or scaled as was done last; again for a row or a ring";
+    let linked = "A copy whose objects share shape and material with their originals: an edit of one changes all";
     let up = "One place up among its siblings; the order of operands matters";
     vec![
         on_selection(Command::Rename, ICON_EDIT, "Rename", "Changes the name in the outliner")
@@ -81,6 +83,7 @@ fn structure() -> Vec<CommandInfo> {
         on_selection(Command::Duplicate, ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it")
             .key(Modifiers::SHIFT, Key::D)
             .key(CTRL, Key::D),
+        on_selection(Command::DuplicateLinked, ICON_LINK, "Duplicate linked", linked).key(Modifiers::ALT, Key::D),
         on_selection(Command::DuplicateAlong, ICON_CONTENT_COPY, "Duplicate along the last move", along)
             .key(Modifiers::SHIFT, Key::R)
             .when(|state| any(state) && state.view.last_motion.is_some()),
@@ -142,7 +145,8 @@ fn instancers() -> Vec<CommandInfo> {
 }
 
 fn roles() -> Vec<CommandInfo> {
-    let negative = "Cut away from what stands before it, or joined again";
+    let subtract = "Cut away from what stands before it, or added again";
+    let intersect = "Keep of what stands before it only what is inside of it, or add it again";
     vec![
         join(Operator::Union, ICON_JOIN_FULL, "Union", "Joins the selection: what is in any of it")
             .key(NONE, Key::U)
@@ -151,7 +155,8 @@ fn roles() -> Vec<CommandInfo> {
             .key(NONE, Key::I),
         join(Operator::Difference, ICON_JOIN_LEFT, "Subtract", "Cuts all later ones out of the first of the selection")
             .key(NONE, Key::D),
-        on_selection(Command::ToggleNegative, ICON_REMOVE_CIRCLE, "Toggle subtract", negative).key(NONE, Key::N),
+        on_selection(Command::ToggleSubtract, ICON_REMOVE_CIRCLE, "Toggle subtract", subtract).key(NONE, Key::N),
+        on_selection(Command::ToggleIntersect, ICON_JOIN_INNER, "Toggle intersect", intersect),
     ]
 }
 
@@ -188,6 +193,7 @@ fn showing() -> Vec<CommandInfo> {
     let unused = "Removes materials that nothing uses";
     let alone = "Hides everything else but lights and cameras; once more shows it again";
     let drop = "Moves the selection down until it touches what is below it, or the ground";
+    let unlink = "Takes the selection out of its sets of linked objects";
     let unique = "Copies of materials that others use, too, for the selection alone";
     vec![
         row(Command::SelectAll, ICON_SELECT_ALL, "Select all", "Selects every node that is not locked")
@@ -212,7 +218,10 @@ fn showing() -> Vec<CommandInfo> {
             .key(Modifiers::ALT, Key::H),
         on_selection(Command::ToggleLock, ICON_LOCK, "Toggle lock", "Locked nodes are not picked in the viewport")
             .key(NONE, Key::L),
-        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique).group(),
+        on_selection(Command::Unlink, ICON_LINK_OFF, "Unlink", unlink)
+            .when(|state| !linked_in_selection(&state.session).is_empty())
+            .group(),
+        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique),
         CommandInfo::new(Menu::Edit, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
     ]
 }
@@ -246,6 +255,14 @@ fn selecting() -> Vec<CommandInfo> {
             "Select same material",
             "Selects all with the material of the active node",
         )
+        .within(Menu::Select),
+        on_selection(
+            Command::SelectLinked,
+            ICON_LINK,
+            "Select linked",
+            "Selects what shares its shape with the selection",
+        )
+        .when(|state| !linked_in_selection(&state.session).is_empty())
         .within(Menu::Select),
         row(
             Command::SelectByBox,

@@ -45,12 +45,12 @@ pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
 /// Shows the context menu of the selection; returns the chosen command.
 pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     use Command::{
-        Delete, Duplicate, FrameSelected, Group, InstanceSelection, MoveDown, MoveUp, Rename, ToggleLock,
-        ToggleNegative, ToggleVisible, Ungroup,
+        Delete, Duplicate, FrameSelected, Group, InstanceSelection, MoveDown, MoveUp, Rename, ToggleIntersect,
+        ToggleLock, ToggleSubtract, ToggleVisible, Ungroup,
     };
     const GROUPS: [&[Command]; 4] = [
         &[Rename, Duplicate, Delete],
-        &[Group, Ungroup, InstanceSelection, ToggleNegative],
+        &[Group, Ungroup, InstanceSelection, ToggleSubtract, ToggleIntersect],
         &[MoveUp, MoveDown],
         &[ToggleVisible, ToggleLock, FrameSelected],
     ];
@@ -72,11 +72,11 @@ pub fn context_entries(ui: &mut Ui) -> Option<Command> {
 pub fn viewport_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
     use Command::{
         AddAtPointer, Delete, DropOnSurface, Duplicate, FrameAll, FrameSelected, Group, Isolate, SelectAll,
-        SelectParents, SelectSimilar, ShowAll, ToggleLock, ToggleNegative, ToggleVisible,
+        SelectParents, SelectSimilar, ShowAll, ToggleIntersect, ToggleLock, ToggleSubtract, ToggleVisible,
     };
     const GROUPS: [&[Command]; 5] = [
         &[AddAtPointer],
-        &[Duplicate, Delete, Group, ToggleNegative],
+        &[Duplicate, Delete, Group, ToggleSubtract, ToggleIntersect],
         &[DropOnSurface, SelectParents, SelectSimilar],
         &[Isolate, ToggleVisible, ToggleLock, FrameSelected],
         &[SelectAll, ShowAll, FrameAll],

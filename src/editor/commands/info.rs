@@ -39,6 +39,8 @@ pub enum Menu {
     Samples,
     /// Views to come back to; a submenu of View.
     Bookmarks,
+    /// Viewports beside each other; a submenu of View.
+    Split,
     /// Transforms, and tools of the viewport; a submenu of View.
     Tool,
     /// Axes of the tools; a submenu of View.

@@ -17,7 +17,7 @@ use crate::{
     pass_view, relations, seeds, selection,
 };
 use isolith_document::Edit;
-use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
+use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operation, Operator};
 
 impl Editor {
     /// Runs a command if it is enabled.
@@ -72,12 +72,13 @@ impl Editor {
 fn run_on_state(state: &mut EditorState, command: Command) {
     let session = &mut state.session;
     match command {
-        Command::ReloadModels => state.derived.reload_models(),
+        Command::ReloadModels | Command::PackFiles | Command::UnpackFiles => models(state, command),
         Command::Undo => undo(session),
         Command::Redo => redo(session),
         Command::Rename => state.renaming = session.document.selection().last().copied(),
-        Command::Duplicate => selection::duplicate(session),
-        Command::DuplicateAlong => relations::duplicate_along(state),
+        Command::Duplicate | Command::DuplicateLinked | Command::DuplicateAlong | Command::Unlink => {
+            duplicate(state, command);
+        }
         Command::ShowHistory => state.show_history ^= true,
         Command::PastePart(_) | Command::Align(..) | Command::Distribute(_) | Command::MoveOrigin(_) => {
             place(state, command)
@@ -94,11 +95,16 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::MoveUp => selection::shift(session, -1),
         Command::MoveDown => selection::shift(session, 1),
         Command::Join(operator) => selection::join(session, operator, false),
-        Command::ToggleNegative => selection::toggle_negative(session),
+        Command::ToggleSubtract => selection::toggle_operation(session, Operation::Subtract),
+        Command::ToggleIntersect => selection::toggle_operation(session, Operation::Intersect),
         Command::SelectAll | Command::SelectNothing | Command::SelectParents | Command::SelectChildren => {
             select(state, command);
         }
-        Command::SelectSimilar | Command::SelectSameMaterial | Command::SelectByBox | Command::SelectByLasso => {
+        Command::SelectSimilar
+        | Command::SelectSameMaterial
+        | Command::SelectLinked
+        | Command::SelectByBox
+        | Command::SelectByLasso => {
             select(state, command);
         }
         Command::Isolate => relations::isolate(state),
@@ -147,8 +153,27 @@ fn run_on_view(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::ShowPass(step) => pass_view::step(state, step),
         Command::Samples(samples) => state.view.samples = samples,
+        Command::SplitView(count) => state.requests.push(Request::SplitView(count)),
         // Those of a window in front or a file.
         _ => {}
+    }
+}
+
+fn models(state: &mut EditorState, command: Command) {
+    let jobs = state.derived.jobs();
+    match command {
+        Command::PackFiles => state.packing.pack(jobs, &state.session),
+        Command::UnpackFiles => state.packing.unpack(jobs, &state.session),
+        _ => state.derived.reload_models(),
+    }
+}
+
+fn duplicate(state: &mut EditorState, command: Command) {
+    match command {
+        Command::Duplicate => selection::duplicate(&mut state.session),
+        Command::DuplicateLinked => selection::duplicate_linked(&mut state.session),
+        Command::DuplicateAlong => relations::duplicate_along(state),
+        _ => selection::unlink(&mut state.session),
     }
 }
 
@@ -168,6 +193,7 @@ fn select(state: &mut EditorState, command: Command) {
         Command::SelectParents => relations::select_parents(state),
         Command::SelectChildren => relations::select_children(state),
         Command::SelectSimilar => relations::select_similar(state),
+        Command::SelectLinked => relations::select_linked(state),
         Command::SelectSameMaterial => relations::select_same_material(state),
         Command::SelectByLasso => state.view.wants_lasso = true,
         Command::SelectByBox => state.view.wants_box = true,

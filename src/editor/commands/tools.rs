@@ -5,7 +5,7 @@ use egui_material_icons::icons::ICON_SETTINGS;
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
-use crate::icons::tool_icon;
+use crate::icons::{orientation_icon, pivot_icon, tool_icon};
 use crate::keymap::Keymap;
 use crate::state::EditorState;
 use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
@@ -46,12 +46,14 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     }));
     all.extend(Orientation::ALL.into_iter().map(|orientation| {
         let label = format!("Orientation: {}", orientation.label());
-        CommandInfo::new(Menu::Orientation, Command::UseOrientation(orientation), None, label, orientation.help())
+        let icon = Icon::from(orientation_icon(orientation));
+        CommandInfo::new(Menu::Orientation, Command::UseOrientation(orientation), icon, label, orientation.help())
             .switch(|state, command| command == Command::UseOrientation(state.view.orientation))
     }));
     all.extend(PivotPoint::ALL.into_iter().map(|pivot| {
         let label = format!("Pivot: {}", pivot.label().to_lowercase());
-        CommandInfo::new(Menu::Pivot, Command::UsePivot(pivot), None, label, pivot.help())
+        let icon = Icon::from(pivot_icon(pivot));
+        CommandInfo::new(Menu::Pivot, Command::UsePivot(pivot), icon, label, pivot.help())
             .switch(|state, command| command == Command::UsePivot(state.view.pivot))
     }));
     all.extend(Keymap::ALL.into_iter().map(|keymap| {

@@ -4,7 +4,8 @@ use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_BOOKMARK, ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_CROP_FREE, ICON_DASHBOARD, ICON_FIT_SCREEN,
-    ICON_GRID_ON, ICON_LIST, ICON_LOCK, ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_VIEW_IN_AR,
+    ICON_GRID_ON, ICON_LIST, ICON_LOCK, ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_SPLITSCREEN,
+    ICON_VIEW_IN_AR,
 };
 
 use super::command::Command;
@@ -48,6 +49,13 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = CommandInfo::new(Menu::View, Command::LookFrom(side), None, label, help).key(modifiers, key);
         all.push(if index == 0 { info.group() } else { info });
     }
+    let split =
+        "Viewports beside each other, each with a view and a shading of its own; keys mean the one under the pointer";
+    let views = [(1, "One view"), (2, "Two views"), (4, "Four views")];
+    all.extend(views.map(|(count, label)| {
+        let icon = if count == 1 { ICON_CROP_FREE } else { ICON_SPLITSCREEN };
+        CommandInfo::new(Menu::Split, Command::SplitView(count), Icon::from(icon), label, split)
+    }));
     all.extend(shown());
     all.extend(Shading::ALL.into_iter().map(|shading| {
         let label = format!("Shading: {}", shading.label());

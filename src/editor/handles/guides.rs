@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind_rows::SEAM_GAP;
 use super::measures::Measures;
 use isolith_geometry::ArcPiece;
-use isolith_scene::{Falloff, LightKind, NodeKind, Shape, profile_curve, tube_curve};
+use isolith_scene::{Falloff, LightKind, Mask, NodeKind, Shape, profile_curve, tube_curve};
 
 /// Corners of a circle.
 const CORNERS: usize = 48;
@@ -24,7 +24,16 @@ pub fn lines(m: &Measures<'_>) -> Vec<Vec<DVec3>> {
             let radius = (m.number("blend.radius") * m.blend_unit).abs() + SEAM_GAP * m.reach;
             vec![circle(m.seam, m.right, m.up, radius)]
         }
-        NodeKind::Group(_) | NodeKind::Instancer(_) | NodeKind::Mesh(_) => Vec::new(),
+        NodeKind::Instancer(instancer) => instancer.masks.iter().flat_map(|slot| mask_lines(&slot.mask)).collect(),
+        NodeKind::Group(_) | NodeKind::Mesh(_) => Vec::new(),
+    }
+}
+
+/// Where a mask by distance begins and ends to be empty.
+fn mask_lines(mask: &Mask) -> Vec<Vec<DVec3>> {
+    match *mask {
+        Mask::Radius { inner, outer } => [inner, outer].map(|at| circle(DVec3::ZERO, DVec3::X, DVec3::Z, at)).into(),
+        Mask::Noise { .. } | Mask::Height { .. } | Mask::Slope { .. } => Vec::new(),
     }
 }
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::measures::Measures;
 use super::rows::{HandleRow, one, zero};
 use super::shape_rows;
-use isolith_scene::{Lattice, LightKind, Node, NodeKind, Part};
+use isolith_scene::{Lattice, LightKind, MaskKind, Node, NodeKind, Part};
 
 fn forward(_: &Measures<'_>) -> DVec3 {
     DVec3::NEG_Z
@@ -108,6 +108,44 @@ pub fn rows_of(node: &Node) -> (Part, &'static [HandleRow]) {
     }
 }
 
+/// Directions off the axes, where the handles of lattices are.
+fn aside(_: &Measures<'_>) -> DVec3 {
+    DVec3::new(0.5 * std::f64::consts::SQRT_2, 0.0, 0.5 * std::f64::consts::SQRT_2)
+}
+
+fn across(_: &Measures<'_>) -> DVec3 {
+    DVec3::new(0.5 * std::f64::consts::SQRT_2, 0.0, -0.5 * std::f64::consts::SQRT_2)
+}
+
+/// Beside the axis along which the spacing is dragged.
+fn beside_axis(m: &Measures<'_>) -> DVec3 {
+    aside(m) * (SEAM_GAP * m.reach)
+}
+
+/// The empty share and the seed of patches have no place in space.
+const NOISE_MASK: &[HandleRow] = &[HandleRow::along("size", zero, aside)];
+const HEIGHT_MASK: &[HandleRow] = &[HandleRow::along("from", beside_axis, up), HandleRow::along("to", beside_axis, up)];
+const SLOPE_MASK: &[HandleRow] = &[
+    HandleRow::angle("from", aside, up, reach, 1.0).at_most(|m| m.number("to")),
+    HandleRow::angle("to", aside, up, reach, 1.0).at_least(|m| m.number("from")),
+];
+const RADIUS_MASK: &[HandleRow] = &[
+    HandleRow::along("inner", zero, aside).at_most(|m| m.number("outer")),
+    HandleRow::along("outer", zero, across).at_least(|m| m.number("inner")),
+];
+
+/// The rows of the masks of an instancer, each with its part of the node.
+pub fn mask_rows(node: &Node) -> Vec<(Part, &'static [HandleRow])> {
+    let NodeKind::Instancer(instancer) = &node.kind else { return Vec::new() };
+    let rows = |kind: MaskKind| match kind {
+        MaskKind::Noise => NOISE_MASK,
+        MaskKind::Height => HEIGHT_MASK,
+        MaskKind::Slope => SLOPE_MASK,
+        MaskKind::Radius => RADIUS_MASK,
+    };
+    instancer.masks.iter().enumerate().map(|(at, slot)| (Part::Mask(at), rows(slot.mask.kind()))).collect()
+}
+
 /// The spacing and the count along each axis that has more than one cell; flat lattices are the usual ones.
 fn lattice_rows(lattice: &Lattice) -> &'static [HandleRow] {
     match lattice {
@@ -141,7 +179,8 @@ mod tests {
             let hexagonal = Lattice::Hexagonal { counts, spacing: 1.0, height: 1.0 };
             let polar = Lattice::Polar { count: 6, rings: counts[1], radius: 2.0, spacing: 1.0 };
             for lattice in [Lattice::Grid { counts, spacing: [1.0; 3] }, hexagonal, polar] {
-                kinds.push(NodeKind::Instancer(Box::new(Instancer { lattice, ..Instancer::default() })));
+                let masks = MaskKind::ALL.iter().map(|kind| kind.default_mask().into()).collect();
+                kinds.push(NodeKind::Instancer(Box::new(Instancer { lattice, masks, ..Instancer::default() })));
             }
         }
         kinds.into_iter().map(|kind| Node::new("Node", kind)).collect()
@@ -150,8 +189,8 @@ mod tests {
     #[test]
     fn every_row_names_a_parameter_that_exists_and_can_be_set() {
         for mut node in of_every_kind() {
-            let (part, rows) = rows_of(&node);
-            for row in rows {
+            let parts: Vec<_> = mask_rows(&node).into_iter().chain([rows_of(&node)]).collect();
+            for (part, row) in parts.into_iter().flat_map(|(part, rows)| rows.iter().map(move |row| (part, row))) {
                 let params = part.params_mut(&mut node).unwrap();
                 let value = params.get(row.param).unwrap_or_else(|| panic!("no {} in {:?}", row.param, part));
                 assert!(params.set(row.param, value), "{}", row.param);

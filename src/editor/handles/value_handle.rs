@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 
 use super::grip::Grip;
 use super::guides;
-use super::kind_rows::rows_of;
+use super::kind_rows::{mask_rows, rows_of};
 use super::measures::Measures;
 use super::rows::{HandleRow, Pull};
 use crate::bounds;
@@ -110,6 +110,15 @@ impl HandleSet {
         for (index, row) in rows.iter().enumerate() {
             set.add_row(projection, &m, index, row);
         }
+        // The handles of each mask are named by rows of their own.
+        let mut first = rows.len();
+        for (part, rows) in mask_rows(node) {
+            let m = measures(state, projection, node, part, &world_from_local);
+            for (index, row) in rows.iter().enumerate() {
+                set.add_row(projection, &m, first + index, row);
+            }
+            first += rows.len();
+        }
         let on_screen = |p: &DVec3| projection.to_screen(world_from_local.transform_point3(*p));
         set.guides = guides::lines(&m).iter().map(|line| line.iter().filter_map(on_screen).collect()).collect();
         Some(set)
@@ -142,6 +151,7 @@ impl HandleSet {
             let label = match target {
                 HandleTarget::Row(point) => format!("Point {}", point + 1),
                 HandleTarget::NewRow(before) => format!("New point {}", before + 1),
+                _ if matches!(m.part, Part::Mask(_)) => format!("{} (mask)", param.label),
                 _ => format!("{}{axis}{suffix}", param.label),
             };
             let path = path.clone();

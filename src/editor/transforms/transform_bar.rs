@@ -1,6 +1,7 @@
-//! The bar at the left of the viewport: the tools, and whose axes they follow.
+//! The bar at the left of the viewport: the tools, and whose axes they follow, and around what they turn.
 
-use egui::{Align, Button, Frame, Layout, Rect, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, Button, Frame, Layout, Rect, Ui, UiBuilder, vec2};
+use egui_material_icons::MaterialIcon;
 
 use super::kinds::Tool;
 use crate::commands::command::Command;
@@ -17,7 +18,7 @@ const BUTTON: egui::Vec2 = vec2(30.0, 28.0);
 /// Shows the bar over the picture.
 pub fn show(state: &mut EditorState, ui: &mut Ui) {
     let corner = state.view.rect.left_top() + vec2(MARGIN, MARGIN);
-    let room = Rect::from_min_size(corner, vec2(BUTTON.x + 4.0, 6.0 * (BUTTON.y + 2.0) + 8.0));
+    let room = Rect::from_min_size(corner, vec2(BUTTON.x + 4.0, 6.0 * (BUTTON.y + 2.0) + 15.0));
     let mut bar = ui.new_child(UiBuilder::new().max_rect(room).layout(Layout::top_down(Align::Min)));
     let frame = Frame::new().fill(theme::FLOATING.gamma_multiply(0.88)).corner_radius(7.0).inner_margin(2.0);
     let chosen = frame.show(&mut bar, |ui| {
@@ -34,25 +35,32 @@ pub fn show(state: &mut EditorState, ui: &mut Ui) {
                 chosen = Some(Command::UseTool(tool));
             }
         }
-        let [orientation, pivot] = [state.view.orientation.label(), state.view.pivot.label()];
-        let axes = format!("Axes of the tools: {}", orientation.to_lowercase());
-        let around = format!("Pivot of the tools: {}", pivot.to_lowercase());
-        let chosen = choice(state, ui, ("Orientation", orientation, axes), Menu::Orientation).or(chosen);
-        choice(state, ui, ("Pivot", pivot, around), Menu::Pivot).or(chosen)
+        divider(ui);
+        let (orientation, pivot) = (state.view.orientation, state.view.pivot);
+        let axes = format!("Axes of the tools: {}\n{}", orientation.label().to_lowercase(), orientation.help());
+        let around = format!("Pivot of the tools: {}\n{}", pivot.label().to_lowercase(), pivot.help());
+        let axes_icon = icons::orientation_icon(orientation);
+        let chosen = choice(state, ui, ("Orientation", axes_icon, axes), Menu::Orientation).or(chosen);
+        choice(state, ui, ("Pivot", icons::pivot_icon(pivot), around), Menu::Pivot).or(chosen)
     });
     state.requests.extend(chosen.inner.map(Request::Run));
 }
 
-/// A menu of choices; its button shows the first letters of the one in use.
+/// A line between the tools and what they follow.
+fn divider(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(vec2(BUTTON.x, 5.0), egui::Sense::hover());
+    ui.painter().hline(rect.x_range().shrink(5.0), rect.center().y, (1.0, theme::FAINT.gamma_multiply(0.6)));
+}
+
+/// A menu of choices; its button shows the icon of the one in use, and a corner that says that there are others.
 fn choice(
     state: &EditorState,
     ui: &mut Ui,
-    (name, current, help): (&str, &str, String),
+    (name, icon, help): (&str, MaterialIcon, String),
     menu: Menu,
 ) -> Option<Command> {
-    let short: String = current.chars().take(2).collect();
     ui.spacing_mut().button_padding.x = 2.0;
-    let opener = Button::new(RichText::new(short).size(12.0).color(theme::WEAK));
+    let opener = Button::new(icon.rich_text().size(17.0).color(theme::WEAK));
     let opener = opener.min_size(BUTTON).frame_when_inactive(false);
     let (button, menu) = egui::containers::menu::MenuButton::from_button(opener).ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
@@ -60,6 +68,9 @@ fn choice(
         menu_entries(ui, state, menu)
     });
     ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(name.to_owned()));
+    let corner = button.rect.right_bottom() - vec2(4.0, 4.0);
+    let triangle = vec![corner, corner - vec2(4.0, 0.0), corner - vec2(0.0, 4.0)];
+    ui.painter().add(egui::Shape::convex_polygon(triangle, *theme::WEAK, egui::Stroke::NONE));
     button.on_hover_text(help);
     menu.and_then(|menu| menu.inner)
 }

@@ -7,7 +7,7 @@ use crate::ray_limits::RayLimits;
 use crate::scene_eval::SceneEvaluator;
 use crate::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
-use isolith_scene::{Node, NodeId, NodeKind, Scene, ShapeKind};
+use isolith_scene::{Node, NodeId, NodeKind, Operation, Scene, ShapeKind};
 
 /// A point of the ground, in the instancer's space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,8 @@ pub fn ground_scene(scene: &Scene, target: NodeId) -> Option<Scene> {
             continue;
         }
         let above = if node.id == target { parent } else { Some(*ids.get(&node.parent?)?) };
-        let copy = Node { id: NodeId(0), parent: None, negative: node.negative && node.id != target, ..node.clone() };
+        let operation = if node.id == target { Operation::Add } else { node.operation };
+        let copy = Node { id: NodeId(0), parent: None, operation, ..node.clone() };
         ids.insert(node.id, alone.insert(above, usize::MAX, copy).ok()?);
     }
     Some(alone)

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::finding::{Finding, FindingKind, Repair};
 use crate::FlatScene;
-use isolith_scene::{Node, NodeId, NodeKind, Scene};
+use isolith_scene::{Node, NodeId, NodeKind, Operation, Scene};
 
 /// A scale beyond these loses digits of f32, or makes a number of meters unreadable.
 const SCALES: [f64; 2] = [1e-3, 1e3];
@@ -72,7 +72,7 @@ fn is_cut(scene: &Scene, node: &Node) -> bool {
         NodeKind::Group(group) => group.operator.needs_first(),
         _ => false,
     };
-    node.negative || parent.is_some_and(|parent| subtracts(parent))
+    node.operation == Operation::Subtract || parent.is_some_and(|parent| subtracts(parent))
 }
 
 /// The finding about an operand that cuts nothing.

@@ -10,7 +10,8 @@ use glam::{DQuat, DVec3};
 use super::*;
 use crate::{Component, FlatNode, FlatScene, Join, eval, flatten};
 use isolith_scene::{
-    Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
+    Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operation, Operator, Scene, Shape,
+    ShapeKind,
 };
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
@@ -103,7 +104,9 @@ fn random_tree(seed: u64, count: usize) -> Scene {
             object(random.bounded_shape()).at(place).rotated(turned).scaled(scale)
         };
         let is_group = !matches!(node.kind, NodeKind::Object(_));
-        node.negative = random.once_in(5);
+        if random.once_in(5) {
+            node.operation = Operation::Subtract;
+        }
         let id = add(&mut scene, Some(parent), node);
         if is_group {
             add(&mut scene, Some(id), object(random.bounded_shape()).at(place).scaled(DVec3::splat(0.8)));

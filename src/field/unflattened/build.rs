@@ -6,6 +6,7 @@ use thiserror::Error;
 use super::modifier::Deformation;
 use super::part::{Deformed, Leaf, Link, Part};
 use crate::Join;
+use crate::blends::is_symmetric;
 use crate::eval::BlendParams;
 use crate::modify::is_idle;
 use crate::prepare::PreparedShape;
@@ -139,7 +140,7 @@ impl Builder<'_> {
             let Some(part) = self.operand(child, outer)? else { continue };
             let Some(before) = whole.take() else {
                 // Subtracting from nothing leaves nothing.
-                if !child.negative {
+                if child.adds() {
                     so_far.push((child, None, part.clone()));
                     whole = Some(part);
                 }
@@ -147,8 +148,7 @@ impl Builder<'_> {
             };
             // At the top of the scene nothing blends.
             let blend_override = if parent.is_some() { child.blend_override } else { BlendOverride::Hard };
-            let link =
-                link(group, child.negative, blend_override).map_err(|reason| Unsupported { node: child.id, reason })?;
+            let link = link(group, child, blend_override).map_err(|reason| Unsupported { node: child.id, reason })?;
             let needs_values = link.blend_params.support > 0.0 || !is_on_sets(link);
             if needs_values && !(part.is_exact() && before.is_exact()) {
                 return Err(Unsupported { node: child.id, reason: BLENDED });
@@ -169,11 +169,12 @@ fn joined(group: &Group, before: Part, so_far: &[SiblingOperand<'_>], link: Link
         return join(group, before, link, part);
     }
     let hard = Link { blend_params: BlendParams { support: 0.0, ..link.blend_params }, ..link };
-    let is_symmetric = [Join::Union, Join::Intersection].map(|join| join as u32).contains(&link.join);
+    let is_symmetric = is_symmetric(node, group.operator);
     let mut allowed: Option<Part> = None;
-    for (other, own, part) in others.iter().filter(|(other, ..)| is_symmetric && !is_apart(other)) {
+    // What the others lost to a cut stays lost.
+    for (other, own, part) in others.iter().filter(|(other, ..)| is_symmetric && (!is_apart(other) || !other.adds())) {
         allowed = match (allowed, own) {
-            (None, _) if other.negative => None,
+            (None, _) if !other.adds() => None,
             (Some(fold), Some(own)) => Some(join(group, fold, *own, part.clone())),
             (_, _) => Some(part.clone()),
         };
@@ -240,8 +241,8 @@ fn united(parts: Vec<Option<Part>>, radius: f64) -> Found {
 }
 
 /// The link of a child, from its group and its own override.
-fn link(group: &Group, negative: bool, blend_override: BlendOverride) -> Result<Link, &'static str> {
-    let join = if negative { Join::Difference } else { Join::of(group.operator) };
+fn link(group: &Group, node: &Node, blend_override: BlendOverride) -> Result<Link, &'static str> {
+    let join = Join::of(node.operation.in_group(group.operator));
     let radius = match blend_override {
         BlendOverride::Inherit => group.blend.radius,
         BlendOverride::Hard => 0.0,

@@ -51,6 +51,16 @@ impl Sculpture {
         out
     }
 
+    /// The triangles of the strip, those without area too.
+    #[cfg(test)]
+    pub(super) fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        let strip = self.strip();
+        (0..strip.len() - 2).map(move |i| {
+            let [a, b, c] = [strip[i], strip[i + 1], strip[i + 2]].map(|index| self.points[usize::from(index)]);
+            if i % 2 == 0 { [a, b, c] } else { [b, a, c] }
+        })
+    }
+
     /// The bytes of a .glb file.
     pub fn file(&self) -> Vec<u8> {
         let least = self.points.iter().fold(DVec3::INFINITY, |a, b| a.min(*b));

@@ -5,7 +5,7 @@
 
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
 use super::animation::TrackFile;
@@ -14,7 +14,7 @@ use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
     MAX_MODIFIERS, MarchSettings, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object,
-    Timeline, whole,
+    Operation, PackedFiles, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -53,6 +53,9 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// Parameters that change with time.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_TRACKS>")]
     pub tracks: Vec<TrackFile>,
+    /// Files that travel within the scene: its models, with the buffers and images that these name.
+    #[serde(default, skip_serializing_if = "PackedFiles::is_empty")]
+    pub packed: PackedFiles,
 }
 
 /// A node: exactly one of `group`, `object`, `instancer`, `mesh`, `light`, `camera` gives its kind.
@@ -74,15 +77,18 @@ pub(super) struct NodeFile<L = Light> {
     /// Protected from selection and change in the viewport.
     #[serde(default, skip_serializing_if = "is_false")]
     pub locked: bool,
-    /// Subtracted from what precedes it in its group.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub negative: bool,
+    /// What it does to those before it in its group. Earlier files say `negative` for what is subtracted.
+    #[serde(default, alias = "negative", deserialize_with = "operation", skip_serializing_if = "is_added")]
+    pub operation: Operation,
     /// How it blends with its siblings.
     #[serde(default, skip_serializing_if = "is_inherited")]
     pub joining: BlendOverride,
     /// Ids of siblings with which it does not blend.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_APART>")]
     pub apart: Vec<NodeId>,
+    /// The set of linked objects to which it belongs: all of a set have the same shape and material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linked: Option<u64>,
     /// Its place in its group.
     #[serde(default, skip_serializing_if = "TransformFile::is_identity")]
     pub transform: TransformFile,
@@ -169,9 +175,10 @@ impl From<&Node> for NodeFile {
             name: node.name.clone(),
             visible: node.visible,
             locked: node.locked,
-            negative: node.negative,
+            operation: node.operation,
             joining: node.blend_override,
             apart: node.apart.clone(),
+            linked: node.linked,
             transform: node.transform.into(),
             weight: node.weight,
             dynamics: node.dynamics.clone(),
@@ -215,9 +222,10 @@ impl NodeFile {
             name: self.name,
             visible: self.visible,
             locked: self.locked,
-            negative: self.negative,
+            operation: self.operation,
             blend_override: self.joining,
             apart: self.apart,
+            linked: self.linked,
             transform: self.transform.into(),
             weight: self.weight,
             dynamics: self.dynamics,
@@ -265,6 +273,25 @@ fn one() -> f64 {
 
 fn is_one(value: &f64) -> bool {
     *value == one()
+}
+
+/// Reads an operation; in earlier files the node was subtracted, or not.
+fn operation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Operation, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "must be \"add\", \"subtract\" or \"intersect\"")]
+    enum NameOrFlag {
+        Name(Operation),
+        Flag(bool),
+    }
+    Ok(match NameOrFlag::deserialize(deserializer)? {
+        NameOrFlag::Name(operation) => operation,
+        NameOrFlag::Flag(false) => Operation::Add,
+        NameOrFlag::Flag(true) => Operation::Subtract,
+    })
+}
+
+fn is_added(operation: &Operation) -> bool {
+    *operation == Operation::Add
 }
 
 fn is_inherited(value: &BlendOverride) -> bool {

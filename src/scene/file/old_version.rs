@@ -247,9 +247,10 @@ impl NodeFile<LightV1> {
             name: self.name,
             visible: self.visible,
             locked: self.locked,
-            negative: self.negative,
+            operation: self.operation,
             joining: self.joining,
             apart: self.apart,
+            linked: self.linked,
             transform: self.transform,
             weight: self.weight,
             dynamics: self.dynamics,
@@ -277,6 +278,7 @@ impl SceneV1 {
             nodes: self.nodes.into_iter().map(NodeFile::converted).collect(),
             timeline: self.timeline,
             tracks: self.tracks,
+            packed: self.packed,
         }
     }
 }

@@ -114,10 +114,12 @@ fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     for (i, node) in scene.nodes.into_iter().enumerate() {
         nodes.push(Some(checked(node, i, file)?));
     }
+    check_links(&nodes, file)?;
     let nodes = order.into_iter().filter_map(|i| nodes[i].take()).collect();
     let tables = Scene::from_tables(nodes, scene.materials, scene.environment, scene.next_id);
     let mut tables = tables.map_err(|e| FileError::new(file, e.to_string()))?;
     tables.display = scene.display;
+    tables.packed = scene.packed;
     tables.animation.timeline = scene.timeline;
     animation::add_tracks(&mut tables, scene.tracks, file)?;
     Ok(tables)
@@ -135,6 +137,20 @@ fn checked(node: NodeFile, i: usize, file: &Path) -> Result<Node, FileError> {
         Ok(()) => Ok(node),
         Err(fault) => Err(FileError::from_fault(file, &format!("nodes[{i}]"), fault).of_node(&name, id)),
     }
+}
+
+/// Checks that linked objects are alike.
+fn check_links(nodes: &[Option<Node>], file: &Path) -> Result<(), FileError> {
+    let mut first: HashMap<u64, &Node> = HashMap::new();
+    for (i, node) in nodes.iter().enumerate() {
+        let Some((node, link)) = node.as_ref().and_then(|node| Some((node, node.linked?))) else { continue };
+        let other = *first.entry(link).or_insert(node);
+        if other.kind != node.kind {
+            let reason = format!("must have the shape and material of node {}, with which it is linked", other.id);
+            return Err(FileError::new(file, reason).of_node(&node.name, node.id).at(format!("nodes[{i}].linked")));
+        }
+    }
+    Ok(())
 }
 
 fn check_materials<M: FileMaterial>(materials: &[M], file: &Path) -> Result<(), FileError> {

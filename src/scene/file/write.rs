@@ -39,6 +39,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),
         timeline: scene.animation.timeline,
         tracks: animation::written(&scene.animation),
+        packed: scene.packed.clone(),
     };
     let mut out = Vec::new();
     let written = table.serialize(&mut serde_json::Serializer::with_formatter(&mut out, OneValuePerLine::default()));

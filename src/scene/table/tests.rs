@@ -50,7 +50,7 @@ fn subtrees_are_held_to_the_same_rules() {
 fn copies_of_a_scene_share_what_an_edit_leaves_alone() {
     let scene = table(&[(1, None, true), (2, Some(1), false)]).unwrap();
     let mut edited = scene.clone();
-    edited.replace(node(2, None, false).negative()).unwrap();
+    edited.replace(node(2, None, false).subtracted()).unwrap();
     assert!(Arc::ptr_eq(&scene.nodes[0], &edited.nodes[0]) && !Arc::ptr_eq(&scene.nodes[1], &edited.nodes[1]));
     assert!(Arc::ptr_eq(&scene.index, &edited.index) && Arc::ptr_eq(&scene.depths, &edited.depths));
     assert_ne!(scene, edited);

@@ -143,13 +143,13 @@ fn negative_children_cut_nothing_from_nothing() {
     let mut scene = Scene::new();
     let parent = Some(add(&mut scene, None, blended(Operator::Union)));
     add_nothing(&mut scene, parent, 0);
-    let cutter = add(&mut scene, parent, ball().negative());
+    let cutter = add(&mut scene, parent, ball().subtracted());
     assert_eq!(count(&flat(&scene)), 0);
     assert_eq!(flat(&scene).warnings.iter().map(|w| w.node).collect::<Vec<_>>(), [cutter]);
     // An empty cutter cuts nothing and needs no warning.
     let mut scene = Scene::new();
     add(&mut scene, None, ball());
-    add(&mut scene, None, group(Operator::Union).negative());
+    add(&mut scene, None, group(Operator::Union).subtracted());
     assert_eq!((count(&flat(&scene)), flat(&scene).warnings.len()), (1, 0));
 }
 

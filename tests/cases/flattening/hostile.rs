@@ -58,7 +58,7 @@ fn copies_of_nothing_are_nothing() {
         ("empty group", group(Operator::Union)),
         ("no size", object(Shape::Box { size: [0.0; 3], rounding: 0.0 })),
         ("hidden", Node { visible: false, ..ball() }),
-        ("negative group", blended(Operator::Pipe).negative()),
+        ("negative group", blended(Operator::Pipe).subtracted()),
     ];
     let recursion =
         Modifier::Recursion { count: 12, offset: [0.5; 3], rotation: [10.0; 3], scale: 0.9, mirrored: [true; 3] };
@@ -128,12 +128,12 @@ fn chains_of_copies_are_counted_before_they_are_made() {
 fn cuts_into_many_components_are_counted() {
     let mut scene = Scene::new();
     add(&mut scene, None, ball().modified(around(512)).modified(around(256)));
-    let cut = add(&mut scene, None, ball().modified(around(1024)).negative());
+    let cut = add(&mut scene, None, ball().modified(around(1024)).subtracted());
     assert_eq!(refused("a ring of cuts", &scene).0, cut.0);
     // As many cuts as components, each reaching one: flattening must not compare all with all.
     let mut scene = Scene::new();
     let place = |i: usize| DVec3::new((i % 200) as f64, 0.0, (i / 200) as f64) * 5.0;
-    let pairs = (0..20_000).map(|i| (ball().at(place(i)), ball().at(place(i) + DVec3::Y).negative()));
+    let pairs = (0..20_000).map(|i| (ball().at(place(i)), ball().at(place(i) + DVec3::Y).subtracted()));
     let (balls, cuts): (Vec<Node>, Vec<Node>) = pairs.unzip();
     let nodes = balls.into_iter().chain(cuts).enumerate().map(|(i, node)| Node { id: NodeId(1 + i as u64), ..node });
     scene.set_nodes(nodes.map(Into::into).collect()).expect("a table");

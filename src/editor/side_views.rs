@@ -1,0 +1,184 @@
+//! Several viewports at once. The one under the pointer is the active one: its view is that of the editor, so that keys
+//! and commands mean it. The others wait in slots, and are swapped in while they are shown.
+
+use super::navigation::{Navigation, Side};
+use super::state::EditorState;
+use super::view_state::{Picture, PointerActivity, Through, ViewSettings};
+use egui::{Pos2, Rect};
+use isolith_field::Shading;
+use isolith_field::debug_view::ViewMode;
+
+/// The number of viewports: the main one and those beside it.
+pub const VIEWS: usize = 4;
+/// The panels of the viewports beside the main one: id, title, and the side from which they look at first.
+pub const SIDES: [(&str, &str, Side); VIEWS - 1] =
+    [("view-2", "View 2", Side::Front), ("view-3", "View 3", Side::Right), ("view-4", "View 4", Side::Top)];
+
+/// What belongs to one viewport.
+struct ViewSlot {
+    navigation: Navigation,
+    through: Option<Through>,
+    shading: Shading,
+    view_mode: ViewMode,
+    rect: Rect,
+    size_px: [u32; 2],
+    picture: Picture,
+    /// Whether it was not shown in this document.
+    is_new: bool,
+}
+
+impl Default for ViewSlot {
+    fn default() -> Self {
+        Self {
+            navigation: Navigation::default(),
+            through: None,
+            shading: Shading::default(),
+            view_mode: ViewMode::Shaded,
+            rect: Rect::NOTHING,
+            size_px: [1, 1],
+            picture: Picture::default(),
+            is_new: true,
+        }
+    }
+}
+
+impl ViewSlot {
+    fn swap(&mut self, state: &mut EditorState) {
+        use std::mem::swap;
+        let view = &mut state.view;
+        swap(&mut self.navigation, &mut view.navigation);
+        swap(&mut self.through, &mut view.through);
+        swap(&mut self.shading, &mut view.shading);
+        swap(&mut self.view_mode, &mut view.view_mode);
+        swap(&mut self.rect, &mut view.rect);
+        swap(&mut self.size_px, &mut view.size_px);
+        swap(&mut self.picture, &mut state.picture);
+    }
+}
+
+/// The viewports.
+#[derive(Default)]
+pub struct SideViews {
+    /// The one whose view is the editor's.
+    active: usize,
+    /// The views of the others.
+    slots: [ViewSlot; VIEWS],
+    /// Which were shown in this frame.
+    shown: [bool; VIEWS],
+}
+
+impl SideViews {
+    /// The viewport whose view is the editor's.
+    pub fn active(&self) -> usize {
+        self.active
+    }
+
+    /// The room of all viewports that wait, none for a single one.
+    pub fn room(&self) -> Option<Rect> {
+        let shown = self.slots.iter().enumerate().filter(|(index, _)| self.shown[*index] && *index != self.active);
+        shown.map(|(_, slot)| slot.rect).reduce(Rect::union)
+    }
+
+    /// Whether more than the main viewport is shown.
+    pub fn is_split(&self) -> bool {
+        self.shown.iter().filter(|shown| **shown).count() > 1
+    }
+}
+
+impl EditorState {
+    /// Sets the pictures of all viewports.
+    pub(super) fn set_pictures(&mut self, main: &Picture, beside: &[Picture]) {
+        for (index, picture) in std::iter::once(main).chain(beside).take(VIEWS).enumerate() {
+            let place =
+                if index == self.views.active { &mut self.picture } else { &mut self.views.slots[index].picture };
+            place.clone_from(picture);
+        }
+    }
+
+    /// Makes a viewport the active one.
+    pub(super) fn activate_view(&mut self, index: usize) {
+        if index == self.views.active {
+            return;
+        }
+        let mut views = std::mem::take(&mut self.views);
+        views.slots[views.active].swap(self);
+        views.slots[index].swap(self);
+        views.active = index;
+        (self.view.pointer, self.view.is_navigating) = (PointerActivity::Away, false);
+        self.views = views;
+    }
+
+    /// Begins a frame: no viewport is shown yet.
+    pub(super) fn begin_views(&mut self) {
+        self.views.shown = [false; VIEWS];
+    }
+
+    /// Ends a frame: a viewport that is closed gives its keys to the main one.
+    pub(super) fn end_views(&mut self) {
+        if !self.views.shown[self.views.active] {
+            self.activate_view(0);
+        }
+    }
+
+    /// Another document is open: each viewport looks at it anew.
+    pub(super) fn reset_views(&mut self) {
+        self.activate_view(0);
+        for slot in &mut self.views.slots {
+            (slot.is_new, slot.through) = (true, None);
+        }
+    }
+
+    /// Shows a viewport with its own view. The pointer makes it the active one unless something is in progress.
+    pub(super) fn show_view<R>(&mut self, index: usize, pointer: Option<Pos2>, show: impl FnOnce(&mut Self) -> R) -> R {
+        self.views.shown[index] = true;
+        let is_free = self.view.transforming.is_none() && !self.view.wants_box && !self.view.wants_lasso;
+        if pointer.is_some() && is_free && !self.view.is_navigating {
+            self.activate_view(index);
+        }
+        if index == self.views.active {
+            self.look_at_first(index);
+            return show(self);
+        }
+        let mut slot = std::mem::take(&mut self.views.slots[index]);
+        slot.swap(self);
+        // What is in progress belongs to the active one.
+        let (transforming, pointer_activity) = (self.view.transforming.take(), self.view.pointer);
+        let (events, flags) = (
+            std::mem::take(&mut self.view.modal_events),
+            [self.view.wants_box, self.view.wants_lasso, self.view.is_navigating],
+        );
+        (self.view.wants_box, self.view.wants_lasso) = (false, false);
+        std::mem::swap(&mut self.views.slots[index].is_new, &mut slot.is_new);
+        self.look_at_first(index);
+        let result = show(self);
+        slot.is_new = self.views.slots[index].is_new;
+        (self.view.transforming, self.view.pointer, self.view.modal_events) = (transforming, pointer_activity, events);
+        [self.view.wants_box, self.view.wants_lasso, self.view.is_navigating] = flags;
+        slot.swap(self);
+        self.views.slots[index] = slot;
+        result
+    }
+
+    /// The first look of a viewport beside the main one.
+    fn look_at_first(&mut self, index: usize) {
+        let Some((_, _, side)) = index.checked_sub(1).map(|beside| SIDES[beside]) else { return };
+        if self.views.slots[index].is_new && !self.derived.is_preparing() {
+            self.views.slots[index].is_new = false;
+            self.view.navigation = Navigation::default();
+            self.view.navigation.look_along(side);
+            self.frame_all();
+        }
+    }
+
+    /// The views of the viewports beside the active one that are shown, for the renderer.
+    pub(super) fn views_beside(&self) -> Vec<(usize, ViewSettings)> {
+        let mut views = Vec::new();
+        for (index, slot) in self.views.slots.iter().enumerate() {
+            if index != self.views.active && self.views.shown[index] {
+                let own = (slot.navigation, slot.size_px, slot.shading, slot.view_mode);
+                views.push((index, self.settings_of(own, false)));
+            }
+        }
+        views
+    }
+}

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# Takes pictures of the window with every panel and dialog open, in both themes and at three sizes, to be looked at.
+#
+#   tests/pictures.sh PROGRAM FOLDER [SCENE [SIZES [THEMES]]]
+#
+# A size is WIDTHxHEIGHT@SCALE. The screen has no monitor; a name of a picture is THEME-SIZE-PANEL.png.
+set -euo pipefail
+
+program=$(realpath "$1")
+mkdir -p "$2"
+folder=$(realpath "$2")
+root=$(cd "$(dirname "$0")/.." && pwd)
+scene=$(realpath "${3:-$root/scenes/character.json}")
+sizes=${4:-1280x800@1 1920x1080@1 2560x1440@1.5}
+themes=${5:-Dark Light}
+# Seconds that a picture of the scene may take to settle, and a panel.
+settle_scene=${SETTLE_SCENE:-12}
+settle_panel=${SETTLE_PANEL:-2}
+
+work=$(mktemp -d)
+export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data XDG_CONFIG_HOME=$work/config XDG_RUNTIME_DIR=$work/run
+# No bus, so no file dialogs but our own.
+export DBUS_SESSION_BUS_ADDRESS=disabled:
+unset WAYLAND_DISPLAY
+mkdir -p -m 700 "$HOME" "$XDG_DATA_HOME" "$XDG_CONFIG_HOME" "$XDG_RUNTIME_DIR"
+
+server= editor=
+close() {
+    [ -z "$editor" ] || kill "$editor" 2>/dev/null || true
+    [ -z "$server" ] || kill "$server" 2>/dev/null || true
+    [ -z "$editor" ] || wait "$editor" 2>/dev/null || true
+    editor= server=
+}
+finish() {
+    close
+    rm -rf "$work"
+}
+trap finish EXIT
+
+keys() { xdotool key --delay 30 "$@"; }
+click() { xdotool mousemove "$1" "$2" click 1; }
+settle() { sleep "${1:-$settle_panel}"; }
+picture() { import -window root "$folder/$theme-$size-$1.png"; }
+
+# Opens the window over the whole screen.
+open() {
+    local width=${size%%x*} rest=${size#*x}
+    local height=${rest%%@*}
+    scale=${rest#*@}
+    rm -rf "$XDG_STATE_HOME" "$work/display"
+    mkdir -p -m 700 "$XDG_STATE_HOME/isolith"
+    printf '{"skips_welcome": %s, "theme": "%s", "scale": %s}' "${WELCOMES:-true}" "$theme" "$scale" >"$XDG_STATE_HOME/isolith/preferences.json"
+    Xvfb -displayfd 3 -screen 0 "${width}x${height}x24" -nolisten tcp 3>"$work/display" 2>/dev/null &
+    server=$!
+    for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
+    DISPLAY=:$(cat "$work/display")
+    export DISPLAY
+    "$program" "$@" 2>"$work/errors" &
+    editor=$!
+    window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$editor" | head -n 1)
+    xdotool windowmove "$window" 0 0 windowsize "$window" "$width" "$height"
+    # Without a window manager nobody gives the keyboard to it.
+    xdotool windowfocus "$window"
+    xdotool mousemove $((width / 2)) $((height / 2))
+}
+
+# A place in points of the user interface.
+at() { awk -v x="$1" -v y="$2" -v s="$scale" 'BEGIN { print int(x * s), int(y * s) }'; }
+
+# A picture of what keys open, and closes it again.
+opened() {
+    local name=$1
+    shift
+    keys "$@"; settle
+    picture "$name"
+    keys Escape; settle 0.5
+}
+
+for theme in $themes; do
+    for size in $sizes; do
+        open "$scene"
+        settle "$settle_scene"
+        picture scene
+        keys ctrl+a; settle; picture all
+        click $(at 120 190); settle; picture node
+        opened palette shift+a
+        opened commands F3
+        opened history alt+z
+        opened help F1
+        opened doctor F10
+        opened render F12
+        opened preferences ctrl+comma
+        click $(at 82 17); settle; picture file; keys Escape; settle 0.5
+        click $(at 118 17); settle; picture edit; keys Escape; settle 0.5
+        click $(at 192 17); settle; picture view; keys Escape; settle 0.5
+        close
+        WELCOMES=false open
+        settle "$settle_scene"
+        picture welcome
+        close
+    done
+done
