@@ -28,6 +28,12 @@
 @group(3) @binding(3) var texels: texture_storage_2d<r32uint, read>;
 #end
 
+#if LIGHT_TILES
+// Of the pass `lights`.
+@group(3) @binding(7) var<storage, read> light_tiles: array<u32>;
+#include "light/light_tiles.wgsl"
+#end
+
 #include "light/material.wgsl"
 #if COPIES
 #include "copy/look.wgsl"

@@ -210,6 +210,8 @@ pub const REACH: Limits = Limits::new([0.5, 4.0], [0.1, 10.0], "");
 pub const FOV: Limits = Limits::new([10.0, 120.0], [0.1, 170.0], "°");
 /// Diameter of the opening of a lens.
 pub const APERTURE: Limits = Limits::new([0.0, 0.1], [0.0, 100.0], "m");
+/// How long a shutter is open.
+pub const SHUTTER: Limits = Limits::new([0.0, 0.2], [0.0, 60.0], "s");
 /// Near and far limits of a camera.
 pub const CLIP: Limits = Limits::new([1e-3, 1e4], [1e-6, 1e9], "m");
 /// Distance from one copy to the next, and lengths of waves.

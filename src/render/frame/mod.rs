@@ -2,4 +2,5 @@
 
 pub mod copies_cost;
 pub mod cost_model;
+pub mod light_tiles;
 pub mod plan;

@@ -97,6 +97,7 @@ impl FramePass for ShadePass {
                 .as_ref()
                 .filter(|_| frame.shade_features.copies)
                 .map(wgpu::Buffer::as_entire_binding),
+            tiles: recorder.resources.light_tiles(),
         };
         let (output, target) = match sampled {
             Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),

@@ -28,6 +28,8 @@ pub struct ShadeFeatures {
     pub shadowed: bool,
     /// There are copies of instancers.
     pub copies: bool,
+    /// There are many lights, and tiles know those that may reach them.
+    pub tiled: bool,
 }
 
 impl ShadeFeatures {
@@ -41,6 +43,7 @@ impl ShadeFeatures {
             image_lit: flat.environment_map.is_some(),
             shadowed,
             copies: !flat.instancers.is_empty(),
+            tiled: false,
         }
     }
 
@@ -49,9 +52,9 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let Self { layers, textures, area_lights, image_lit, shadowed, copies } = self;
+        let Self { layers, textures, area_lights, image_lit, shadowed, copies, tiled } = self;
         let options = Options { layers, area_lights, image_lit, shadowed, ..Options::default() };
-        let used = [(textures, "TEXTURES"), (copies, "COPIES")];
+        let used = [(textures, "TEXTURES"), (copies, "COPIES"), (tiled, "LIGHT_TILES")];
         let features: Vec<&str> = used.into_iter().filter_map(|(is_used, name)| is_used.then_some(name)).collect();
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, &features)
     }
@@ -91,6 +94,7 @@ const SUM: u32 = 0;
 const TEXTURES: [u32; 3] = [1, 2, 3];
 const SHARES: [u32; 2] = [4, 5];
 const COPIED: u32 = 6;
+const TILES: u32 = 7;
 
 /// The resources of group 3.
 #[derive(Clone, Debug, Default)]
@@ -103,6 +107,8 @@ pub struct ShadeExtras<'a> {
     pub shares: Option<[BindingResource<'a>; 2]>,
     /// Which copies the pixels show, if there are some.
     pub copied: Option<BindingResource<'a>>,
+    /// The lights of each tile, if there are many.
+    pub tiles: Option<BindingResource<'a>>,
 }
 
 impl ShadeFeatures {
@@ -113,7 +119,8 @@ impl ShadeFeatures {
         let textures = TEXTURES.into_iter().zip(of_textures).filter(|_| self.textures);
         let shares = SHARES.into_iter().zip([uniform(false), read_storage()]).filter(|_| self.shadowed);
         let copied = self.copies.then(|| (COPIED, read_storage()));
-        let all = sum.into_iter().chain(textures).chain(shares).chain(copied);
+        let tiles = self.tiled.then(|| (TILES, read_storage()));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(tiles);
         let entries: Vec<_> = all.map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
         layout(device, "shade extras", &entries)
     }
@@ -127,7 +134,8 @@ impl ShadeExtras<'_> {
         let textures = textures.into_iter().flat_map(|resources| TEXTURES.into_iter().zip(resources));
         let shares = self.shares.into_iter().flat_map(|resources| SHARES.into_iter().zip(resources));
         let copied = self.copied.map(|copied| (COPIED, copied));
-        let all = sum.into_iter().chain(textures).chain(shares).chain(copied);
+        let tiles = self.tiles.map(|tiles| (TILES, tiles));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(tiles);
         let entries: Vec<_> = all.map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
         device.create_bind_group(&BindGroupDescriptor { label: Some("shade extras"), layout, entries: &entries })
     }

@@ -3,7 +3,7 @@
 use super::*;
 
 /// The light of a scene without lights.
-const LIGHT: PixelLight = PixelLight { lights: 2, shadows: 0.0 };
+const LIGHT: PixelLight = PixelLight { lights: 2, tiled: false, shadows: 0.0 };
 
 #[test]
 fn parts_cover_every_pixel_once_and_stay_small() {
