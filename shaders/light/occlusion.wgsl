@@ -1,6 +1,7 @@
 // The cones of occlusion. Counterpart of `src/field/light/occlusion.rs`.
 
 const OCCLUSION_CONES: u32 = 6u;
+const OCCLUSION_WORTH: f32 = 12.0;
 
 // Two vectors that form an orthonormal basis with a unit vector (Duff et al., "Building an
 // Orthonormal Basis, Revisited", 2017).
@@ -20,6 +21,14 @@ fn occlusion_up(normal: vec3f) -> vec3f {
 // visible. Never 0, for cones err.
 fn occlusion_doubt(share: f32) -> f32 {
     return max(sqrt(max(share * (1.0 - share), 0.0)), 0.1);
+}
+
+// How much of what the ray of a sample tells is believed. After n rays all of it is n²/(n + 12): as if the
+// cones were worth 12 rays, so that few samples have little noise and many have no bias.
+fn occlusion_trust(sample: u32) -> f32 {
+    let n = f32(sample);
+    let before = max(n - 1.0, 0.0);
+    return n * n / (n + OCCLUSION_WORTH) - before * before / (before + OCCLUSION_WORTH);
 }
 
 // A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit

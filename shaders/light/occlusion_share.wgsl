@@ -4,7 +4,7 @@
 
 // Mean free direction, and visible share of the environment. In a sample of a still picture a ray corrects
 // the cone in whose part of the hemisphere it lies: the mean of the samples is that of the rays, with less
-// noise (a control variate, sampled where it is in doubt). A single share may be below 0 or above 1.
+// noise (a control variate, sampled where it is in doubt), and the first of many count less. A single share may be below 0 or above 1.
 fn occlusion_at(pixel: vec2u, normal: vec3f) -> vec4f {
     let slot = (shadow_settings.lights + 3u) / 4u * 4u;
     var sum = vec4f(0.0);
@@ -21,7 +21,7 @@ fn occlusion_at(pixel: vec2u, normal: vec3f) -> vec4f {
     let of_cone = shares_byte(pixel, slot + cone_of_ray);
     let off = (shares_byte(pixel, slot + OCCLUSION_CONES) - of_cone) * doubt / occlusion_doubt(of_cone);
     let has_ray = shadow_settings.sample > 0u && shadow_settings.cones > 0u;
-    let visible = seen.w + select(0.0, off, has_ray);
+    let visible = seen.w + select(0.0, off * occlusion_trust(shadow_settings.sample), has_ray);
     let bent = normal + (seen.xyz * seen.w - normal) * shadow_settings.occlusion_strength;
     return vec4f(
         select(normal, normalize(bent), dot(bent, bent) > 1e-8),

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::occlusion::{AmbientRay, Occlusion, occlusion_shares};
+use super::occlusion::{AmbientRay, Occlusion, occlusion_shares, occlusion_trust};
 use super::shadow::{
     ShadowCone, ShadowProof, cone_fineness, light_extent, light_is_seen, light_sample, light_toward, shadow_share,
     unit_sample,
@@ -86,7 +86,7 @@ impl Arriving {
                 let limits = RayLimits { near: 0.0, far: radius };
                 let is_free = evaluator.ray(&ray, limits)?.is_none()
                     && !mesh_rays_blocked(evaluator.flat(), meshes, &ray, 0.0, radius);
-                visible = shares[usize::from(is_free)];
+                visible += (shares[usize::from(is_free)] - visible) * occlusion_trust(point.sample);
             }
             arriving.visibility = 1.0 + (visible - 1.0) * shadowing.occlusion_strength;
         }
