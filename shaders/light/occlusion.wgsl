@@ -23,12 +23,15 @@ fn occlusion_doubt(share: f32) -> f32 {
     return max(sqrt(max(share * (1.0 - share), 0.0)), 0.1);
 }
 
-// How much of what the ray of a sample tells is believed. After n rays all of it is n²/(n + 12): as if the
-// cones were worth 12 rays, so that few samples have little noise and many have no bias.
+// How much n rays together tell, in rays: those of few samples are believed little and have little noise,
+// those of many all, without bias.
+fn occlusion_believed(n: f32) -> f32 {
+    return n * n * n / (n * n + OCCLUSION_WORTH * OCCLUSION_WORTH);
+}
+
+// How much of what the ray of a sample tells is believed.
 fn occlusion_trust(sample: u32) -> f32 {
-    let n = f32(sample);
-    let before = max(n - 1.0, 0.0);
-    return n * n / (n + OCCLUSION_WORTH) - before * before / (before + OCCLUSION_WORTH);
+    return occlusion_believed(f32(sample)) - occlusion_believed(max(f32(sample) - 1.0, 0.0));
 }
 
 // A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit
