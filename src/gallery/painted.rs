@@ -40,7 +40,7 @@ pub(super) fn scene() -> Scene {
     builder.add(grown, object("Stone", sphere(0.16), moss).at(v(0.62, 0.08, 0.26)));
     builder.add(
         grown,
-        object("Bite", cylinder(0.09, 0.8, 0.0), moss).at(v(1.02, 0.62, 0.2)).rotated(turn_x(90.0)).negative(),
+        object("Bite", cylinder(0.09, 0.8, 0.0), moss).at(v(1.02, 0.62, 0.2)).rotated(turn_x(90.0)).subtracted(),
     );
 
     builder.sun("Sun", [-0.6, 0.9, 0.7], [1.0, 0.94, 0.85], 1.0);
