@@ -3,6 +3,7 @@
 
 #include "copy/space.wgsl"
 #include "copy/walk_list.wgsl"
+#include "copy/blocks.wgsl"
 
 // A copy whose bounding sphere the cone meets, and where.
 struct CopyVisit {
@@ -54,6 +55,7 @@ fn copy_walk_begin(kind: u32, origin: vec3f, direction: vec3f, near: f32, far: f
     walk.near = near;
     walk.cell = vec3i(1);
     walk.entry = near;
+    walk.block = BLOCK_SLABS;
     // Between the bounds of all copies.
     let interval = walk_interval(&walk, instancer.bounds_low, instancer.bounds_high, far);
     walk.near = interval.x;
@@ -114,6 +116,7 @@ fn copy_walk_is_over(walk: ptr<function, CopyWalk>) -> bool {
 // none.
 fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr<function, CopyVisit>) -> bool {
     let is_list = instancer_count(instancer.tree_count, (*walk).direction.x) > 0u;
+    let masks = instancer_count(instancer.mask_count, (*walk).direction.x);
     loop {
         if copy_walk_is_over(walk) {
             return false;
@@ -127,6 +130,11 @@ fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr
         if is_list {
             looks = walk_step_list(walk, far);
         } else if any((*walk).cell > (*walk).high) {
+            if masks > 0u && (*walk).pause == 0 && (*walk).left >= BLOCK_LEAST {
+                copy_walk_pass_block(walk, far, masks);
+                continue;
+            }
+            (*walk).pause = max((*walk).pause - 1, 0);
             if walk_next_slab(walk, far) {
                 return false;
             }

@@ -26,6 +26,10 @@ struct CopyWalk {
     high: vec3i,
     // Open nodes of the tree of a list.
     open: u32,
+    // Slabs of the next block that may be empty, and slabs until one is tried again: see
+    // `copy/blocks.wgsl`.
+    block: i32,
+    pause: i32,
     // The cell or place to look at, see `copy_at`. Of a place, the second is its node.
     at: vec3i,
 }

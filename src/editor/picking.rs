@@ -28,6 +28,13 @@ pub fn pick_node(state: &EditorState, ray: &Ray) -> Option<NodeId> {
     pick_in(state, state.flat(), ray)
 }
 
+/// The same with the copy of an instancer that it is part of.
+pub fn pick_copy(state: &EditorState, ray: &Ray) -> Option<pick::Picked> {
+    let flat = state.flat();
+    let camera = state.view.navigation.camera();
+    pick::pick_copy(flat, &flat.known_meshes(state.derived.library()), ray, camera.near, camera.far)
+}
+
 fn pick_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Option<NodeId> {
     let meshes = flat.known_meshes(state.derived.library());
     let camera = state.view.navigation.camera();

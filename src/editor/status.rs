@@ -177,6 +177,9 @@ fn hint_of(state: &EditorState, ctx: &Context) -> String {
         PointerActivity::Boxing => "Drag a box around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
+        PointerActivity::Hovering if state.view.copy_path.is_some() => {
+            state.view.copy_path.clone().unwrap_or_default()
+        }
         PointerActivity::Hovering => format!(
             "Click: select, again: below · Double click: into the group · {}Drag: orbit · Shift drag: pan · \
              Ctrl drag: box · Right button with W A S D: fly",

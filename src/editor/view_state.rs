@@ -170,6 +170,8 @@ pub struct ViewState {
     pub wants_lasso: bool,
     /// Where the context menu was opened.
     pub menu_at: Option<Pos2>,
+    /// The path of the copy of an instancer under the pointer.
+    pub copy_path: Option<String>,
     /// The keys and texts of this frame that belong to it.
     pub modal_events: Vec<Event>,
     /// The picture's rectangle, in points.
@@ -213,6 +215,7 @@ impl Default for ViewState {
             wants_box: false,
             wants_lasso: false,
             menu_at: None,
+            copy_path: None,
             modal_events: Vec::new(),
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),
             size_px: [640, 480],

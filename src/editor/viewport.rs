@@ -85,6 +85,7 @@ impl Viewport {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
         self.navigate(state, ui, response);
         self.paint(state, ui, response);
+        state.view.copy_path = self.hover.copy_path(state.session.document.scene());
         shading_bar::show(state, ui);
         if self.index == 0 {
             transform_bar::show(state, ui);

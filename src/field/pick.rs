@@ -1,19 +1,48 @@
 //! Picking: the node that a ray hits.
 
 use super::FlatScene;
+use super::copies::nearest_copy;
 use super::mesh_rays::{Meshes, trace_meshes};
 use super::scene_eval::{RayLimits, SceneEvaluator};
 use isolith_geometry::Ray;
 use isolith_scene::NodeId;
 
-/// The node of the first hit of an eye's ray between `near` and `far`, an object or a mesh. In a blend, the object with the largest
-/// weight there.
+/// What a ray hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Picked {
+    /// An object or a mesh. In a blend, the object with the largest weight there.
+    pub node: NodeId,
+    /// The copy of an instancer that it is part of.
+    pub copy: Option<PickedCopy>,
+}
+
+/// A copy that a ray hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PickedCopy {
+    /// The instancer.
+    pub instancer: NodeId,
+    /// Its cell, or the id of its place.
+    pub cell: [i32; 3],
+}
+
+/// The node of the first hit of an eye's ray between `near` and `far`.
 pub fn pick(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<NodeId> {
+    pick_copy(flat, meshes, ray, near, far).map(|picked| picked.node)
+}
+
+/// The same with the copy that it is part of.
+pub fn pick_copy(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<Picked> {
     let mesh = trace_meshes(flat, meshes, ray, near, far);
     let limit = mesh.map_or(far, |(_, hit)| hit.t);
     // A ray that cannot be followed to its end counts as a miss of all fields.
-    match SceneEvaluator::new(flat).of_eye().ray(ray, RayLimits { near, far: limit }).ok().flatten() {
-        Some(hit) => Some(flat.ids[hit.leaf as usize]),
-        None => mesh.map(|(index, _)| flat.meshes[index].id),
-    }
+    let Some(hit) = SceneEvaluator::new(flat).of_eye().ray(ray, RayLimits { near, far: limit }).ok().flatten() else {
+        return mesh.map(|(index, _)| Picked { node: flat.meshes[index].id, copy: None });
+    };
+    let component = &flat.components[hit.component as usize];
+    let copy = component.instanced.and_then(|of| {
+        let instancer = flat.instancers[of.instancer as usize].id;
+        let copy = nearest_copy(flat, component, ray.at(hit.t)).copy?;
+        Some(PickedCopy { instancer, cell: copy.cell })
+    });
+    Some(Picked { node: flat.ids[hit.leaf as usize], copy })
 }

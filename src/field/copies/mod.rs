@@ -3,6 +3,7 @@
 //! A copy is never stored: its place, its type and its motion follow from the seed, its cell and the time. A type is a
 //! component of the flat scene in the space of a copy, see [`crate::InstanceType`].
 
+mod blocks;
 pub(crate) mod build;
 mod dynamics;
 mod eval;
@@ -31,4 +32,6 @@ pub use look::{look_at, look_color, look_mixture, look_varied};
 pub use noise::{Coordinate, copy_curl, copy_noise_1, copy_noise_2};
 pub use trace::{CopyRay, copy_ray, visit_copies};
 pub use variation::{Copy, CopyMaterial, copy_mask, copy_material, copy_of_cell, copy_of_place};
-pub use walk::{CopyCone, CopyVisit, MAX_SLABS, copies_along, copy_sphere, walk_axis};
+pub use walk::{
+    CopyCone, CopyVisit, MAX_SLABS, WalkCounts, copies_along, copies_along_every_cell, copy_sphere, walk_axis,
+};

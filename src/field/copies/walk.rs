@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::instancer::{FlatInstancer, FlatLattice, Placement};
+use super::blocks::{BlockWalk, block_is_empty};
+use super::instancer::{FlatInstancer, FlatLattice, PlaceList, Placement};
 use super::variation::{Copy, copy_of_cell, copy_of_place};
 use crate::ray_limits::RayLimits;
 use isolith_geometry::{Aabb, Ray};
@@ -58,57 +59,171 @@ impl CopyCone {
     }
 }
 
+/// The work of a walk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WalkCounts {
+    /// Blocks of slabs that were tried.
+    pub blocks: u64,
+    /// Cells looked at, or nodes of a list.
+    pub cells: u64,
+    /// Copies that stand there.
+    pub copies: u64,
+    /// Copies whose bounding spheres the cone met.
+    pub met: u64,
+}
+
 /// Visits the copies that a cone may meet. `visit` may move `limits.far` nearer, or break off.
 pub fn copies_along(
     instancer: &FlatInstancer,
-    mut cone: CopyCone,
+    cone: CopyCone,
     visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
-) {
-    cone.limits = cone.interval(&instancer.bounds());
-    if cone.limits.near > cone.limits.far {
-        return;
-    }
-    match &instancer.placement {
-        Placement::Lattice(lattice) => {
-            let _ = along_lattice(instancer, lattice, &mut cone, visit);
-        }
-        Placement::List(_) => along_list(instancer, cone, visit),
-    }
+) -> WalkCounts {
+    CopyWalk { instancer, cone, skips: true, counts: WalkCounts::default() }.run(visit)
 }
 
-fn along_lattice(
+/// The same, but looks at every cell within reach, also where masks leave blocks empty: for comparison.
+pub fn copies_along_every_cell(
     instancer: &FlatInstancer,
-    lattice: &FlatLattice,
-    cone: &mut CopyCone,
+    cone: CopyCone,
     visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
-) -> ControlFlow<()> {
-    let axis = walk_axis(lattice, cone.axis.direction);
-    let [first, last] = cells_between(instancer, lattice, cone, axis, [cone.limits.near, cone.limits.far]);
-    let backward = cone.axis.direction[axis] < 0.0;
-    let slabs = (i64::from(last) - i64::from(first) + 1).clamp(0, i64::from(MAX_SLABS)) as i32;
-    for step in 0..slabs {
-        let slab = if backward { last - step } else { first + step };
-        let [entry, exit] = slab_interval(instancer, lattice, cone, axis, slab);
-        if entry > cone.limits.far {
-            break;
+) -> WalkCounts {
+    CopyWalk { instancer, cone, skips: false, counts: WalkCounts::default() }.run(visit)
+}
+
+/// A walk.
+struct CopyWalk<'a> {
+    instancer: &'a FlatInstancer,
+    cone: CopyCone,
+    /// Whether it passes empty blocks.
+    skips: bool,
+    counts: WalkCounts,
+}
+
+impl CopyWalk<'_> {
+    fn run(mut self, visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>) -> WalkCounts {
+        self.cone.limits = self.cone.interval(&self.instancer.bounds());
+        if self.cone.limits.near <= self.cone.limits.far {
+            let _ = match &self.instancer.placement {
+                Placement::Lattice(lattice) => self.along_lattice(lattice, visit),
+                Placement::List(list) => self.along_list(list, visit),
+            };
         }
-        if entry > exit {
-            continue;
-        }
-        let ranges = [0, 1, 2].map(|other| match other {
-            _ if other == axis => [slab, slab],
-            _ => cells_between(instancer, lattice, cone, other, [entry, exit]),
-        });
-        for z in ranges[2][0]..=ranges[2][1] {
-            for y in ranges[1][0]..=ranges[1][1] {
-                for x in ranges[0][0]..=ranges[0][1] {
-                    let Some(copy) = copy_of_cell(instancer, [x, y, z]) else { continue };
-                    meet(instancer, copy, cone, visit)?;
+        self.counts
+    }
+
+    fn along_lattice(
+        &mut self,
+        lattice: &FlatLattice,
+        visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let (instancer, direction) = (self.instancer, self.cone.axis.direction);
+        let axis = walk_axis(lattice, direction);
+        let range = [self.cone.limits.near, self.cone.limits.far];
+        let [first, last] = cells_between(instancer, lattice, &self.cone, axis, range);
+        let backward = direction[axis] < 0.0;
+        let slabs = (i64::from(last) - i64::from(first) + 1).clamp(0, i64::from(MAX_SLABS)) as i32;
+        let mut blocks = BlockWalk::new();
+        let mut step = 0;
+        while step < slabs {
+            let slab_at = |step: i32| if backward { last - step } else { first + step };
+            if self.skips
+                && !instancer.masks.is_empty()
+                && let Some(count) = blocks.next(slabs - step)
+            {
+                let is_empty = self.is_empty(lattice, axis, [slab_at(step), slab_at(step + count - 1)]);
+                blocks.learn(is_empty);
+                self.counts.blocks += 1;
+                step += if is_empty { count } else { 0 };
+                continue;
+            }
+            let slab = slab_at(step);
+            step += 1;
+            let [entry, exit] = slab_interval(instancer, lattice, &self.cone, axis, slab);
+            if entry > self.cone.limits.far {
+                break;
+            }
+            if entry > exit {
+                continue;
+            }
+            let ranges = self.ranges(lattice, axis, [slab, slab], [entry, exit]);
+            for z in ranges[2][0]..=ranges[2][1] {
+                for y in ranges[1][0]..=ranges[1][1] {
+                    for x in ranges[0][0]..=ranges[0][1] {
+                        self.counts.cells += 1;
+                        let Some(copy) = copy_of_cell(instancer, [x, y, z]) else { continue };
+                        self.look(copy, visit)?;
+                    }
                 }
             }
         }
+        ControlFlow::Continue(())
     }
-    ControlFlow::Continue(())
+
+    /// The cells along each axis that the cone may meet between two parameters, those along `axis` given.
+    fn ranges(&self, lattice: &FlatLattice, axis: usize, along: [i32; 2], range: [f64; 2]) -> [[i32; 2]; 3] {
+        [0, 1, 2].map(|other| match other {
+            _ if other == axis => along,
+            _ => cells_between(self.instancer, lattice, &self.cone, other, range),
+        })
+    }
+
+    /// Whether masks let no copy stand where the cone may meet those of the slabs from the one to the other.
+    fn is_empty(&self, lattice: &FlatLattice, axis: usize, [from, to]: [i32; 2]) -> bool {
+        let interval = |slab| slab_interval(self.instancer, lattice, &self.cone, axis, slab);
+        let [entry, exit] = [interval(from)[0], interval(to)[1]];
+        if entry > exit {
+            return false;
+        }
+        let ranges = self.ranges(lattice, axis, [from.min(to), from.max(to)], [entry, exit]);
+        if ranges.iter().any(|[low, high]| low > high) {
+            return true;
+        }
+        let corner = |end: usize| {
+            let cell = DVec3::from_array(ranges.map(|range| f64::from(range[end])));
+            cell * lattice.spacing + lattice.shift
+        };
+        let off = DVec3::X * lattice.stagger;
+        block_is_empty(self.instancer, corner(0) - off, corner(1) + off)
+    }
+
+    /// Visits a copy if the cone meets it.
+    fn look(
+        &mut self,
+        copy: Copy,
+        visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.counts.copies += 1;
+        let Some(met) = meeting(self.instancer, copy, &self.cone) else { return ControlFlow::Continue(()) };
+        self.counts.met += 1;
+        visit(&met, &mut self.cone.limits)
+    }
+
+    fn along_list(
+        &mut self,
+        list: &PlaceList,
+        visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut open: Vec<usize> = if list.tree.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(index) = open.pop() {
+            let node = &list.tree.nodes[index];
+            self.counts.cells += 1;
+            let RayLimits { near, far } = self.cone.interval(&node.bounds);
+            if near > far {
+                continue;
+            }
+            if !node.is_leaf() {
+                let [near, far] = if self.cone.axis.direction[node.axis as usize] < 0.0 {
+                    [node.link as usize, index + 1]
+                } else {
+                    [index + 1, node.link as usize]
+                };
+                open.extend([far, near]);
+            } else if let Some(copy) = copy_of_place(self.instancer, node.link as usize) {
+                self.look(copy, visit)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
 }
 
 /// The axis of several cells along which the ray crosses most of them.
@@ -168,44 +283,11 @@ fn slab_interval(
     [entry.max(near), exit.min(far)]
 }
 
-fn along_list(
-    instancer: &FlatInstancer,
-    mut cone: CopyCone,
-    visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
-) {
-    let Placement::List(list) = &instancer.placement else { return };
-    let mut open: Vec<usize> = if list.tree.nodes.is_empty() { Vec::new() } else { vec![0] };
-    while let Some(index) = open.pop() {
-        let node = &list.tree.nodes[index];
-        let RayLimits { near, far } = cone.interval(&node.bounds);
-        if near > far {
-            continue;
-        }
-        if !node.is_leaf() {
-            let [near, far] = if cone.axis.direction[node.axis as usize] < 0.0 {
-                [node.link as usize, index + 1]
-            } else {
-                [index + 1, node.link as usize]
-            };
-            open.extend([far, near]);
-        } else if let Some(copy) = copy_of_place(instancer, node.link as usize)
-            && meet(instancer, copy, &mut cone, visit).is_break()
-        {
-            return;
-        }
-    }
-}
-
-/// Visits a copy if the cone meets its bounding sphere.
-fn meet(
-    instancer: &FlatInstancer,
-    copy: Copy,
-    cone: &mut CopyCone,
-    visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+/// Where the cone meets the bounding sphere of a copy; `None` if it does not.
+fn meeting(instancer: &FlatInstancer, copy: Copy, cone: &CopyCone) -> Option<CopyVisit> {
     let (center, radius) = copy_sphere(instancer, &copy);
     if radius <= 0.0 {
-        return ControlFlow::Continue(());
+        return None;
     }
     let away = center - cone.axis.origin;
     let (speed, along) = (cone.axis.direction.length(), away.dot(cone.axis.direction));
@@ -213,14 +295,11 @@ fn meet(
     let radius = radius + cone.spread * (nearest + radius / speed).clamp(0.0, cone.limits.far);
     let miss = (away - cone.axis.direction * nearest).length_squared();
     if miss > radius * radius {
-        return ControlFlow::Continue(());
+        return None;
     }
     let half = (radius * radius - miss).sqrt() / speed;
     let (entry, exit) = ((nearest - half).max(cone.limits.near), (nearest + half).min(cone.limits.far));
-    if entry > exit {
-        return ControlFlow::Continue(());
-    }
-    visit(&CopyVisit { copy, entry, exit }, &mut cone.limits)
+    (entry <= exit).then_some(CopyVisit { copy, entry, exit })
 }
 
 /// Bounding sphere of a copy, in the space of the instancer: center and radius.
