@@ -31,6 +31,12 @@
 @group(3) @binding(7) var bricks: texture_storage_2d<rgba32uint, read>;
 #end
 
+#if LIGHT_TILES
+// Of the pass `lights`.
+@group(3) @binding(10) var<storage, read> light_tiles: array<u32>;
+#include "light/light_tiles.wgsl"
+#end
+
 #include "light/material.wgsl"
 #if COPIES
 #include "copy/look.wgsl"

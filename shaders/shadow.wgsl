@@ -1,6 +1,7 @@
 // Pass `shadow`: soft shadows of the pixels with hits, by cones against the whole scene. Each pixel
-// takes one cone after the other, one for each light that reaches it. An invocation that reaches
-// its limits leaves its state to the next dispatch. The second entry point, occlusion, is in
+// takes one cone after the other, one for each light that reaches it; in samples of still pictures
+// with occlusion, one ray to the environment comes last. An invocation that reaches its limits
+// leaves its state to the next dispatch. The second entry point, occlusion by cones, is in
 // `light/shadow_occlusion.wgsl`.
 
 #include "common/view.wgsl"
@@ -10,6 +11,7 @@
 #include "scene/surface_ray.wgsl"
 #if MESH_RAYS
 #include "scene/mesh_rays.wgsl"
+#include "scene/mesh_near.wgsl"
 #end
 #include "scene/cone.wgsl"
 #if SCENE_COPIES
@@ -44,9 +46,9 @@ fn shadow(@builtin(global_invocation_id) id: vec3u) {
     let own = shadow_place(id.xy, 0u);
     let first = (pixel.y * view.width + pixel.x) * settings.stride;
     let point = shadow_point(pixel);
-    let tasks = select(0u, settings.lights, point.depth < BACKGROUND);
+    let tasks = select(0u, settings.lights + shadow_ambient_rays(), point.depth < BACKGROUND);
     var task = 0u;
-    var march = cone_march_begin();
+    var march = shadow_march_begin(task, false);
 #if SCENE_COPIES
     var copies = copies_begin();
     var walk: CopyWalk;
@@ -71,6 +73,7 @@ fn shadow(@builtin(global_invocation_id) id: vec3u) {
             has_cone = cone.far > 0.0;
             if !has_cone {
                 task += 1u;
+                march = shadow_march_begin(task, false);
                 continue;
             }
         }
@@ -100,11 +103,10 @@ fn shadow(@builtin(global_invocation_id) id: vec3u) {
             has_cone = false;
             let needs_ray = (march.state & (CONE_UNPROVEN | CONE_RAY)) == CONE_UNPROVEN && settings.sample > 0u;
             if !needs_ray {
-                shadow_store(first, task, shadow_mesh_share(point, task, march.share));
+                shadow_store_task(first, point, task, shadow_mesh_share(point, task, march.share));
                 task += 1u;
             }
-            march = cone_march_begin();
-            march.state = select(0u, CONE_RAY, needs_ray);
+            march = shadow_march_begin(task, needs_ray);
 #if SCENE_COPIES
             copies = copies_begin();
 #end

@@ -160,7 +160,7 @@ fn what_is_not_understood_is_refused_with_a_reason() {
         ("--exposure", "99", "-20 to 20"),
         ("--view-transform", "filmic", "none, agx, pbr_neutral"),
         ("--view", "heat", "shaded, steps, evaluations"),
-        ("--shading", "matcap", "solid, material, rendered"),
+        ("--shading", "matcap", "solid, porcelain, bronze, wax, material, rendered"),
     ] {
         let mut arguments = vec!["render", "scene.json", flag, value];
         if flag != "-o" {

@@ -1,17 +1,20 @@
 //! Light in pictures: the GPU against the reference renderer, for every kind of light and for very many of them.
 
+#![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
+
 use glam::{DQuat, DVec3};
 use isolith::field::GBuffer;
 use isolith::field::reference::image::{ReferenceImage, render_reference};
-use isolith::field::{MAX_LIGHTS, flatten};
+use isolith::field::{FlatScene, MAX_LIGHTS, flatten};
+use isolith::gallery;
 use isolith::geometry::Camera;
 use isolith::render::EvalStrategy;
 use isolith::scene::{
-    Attachment, Environment, EnvironmentImage, EnvironmentKind, Falloff, Light, LightKind, Material, MaterialId, Node,
-    NodeKind, Object, ReflectionModel, Scene, Shape,
+    Attachment, ColorSpace, ColorTexture, Environment, EnvironmentImage, EnvironmentKind, Falloff, Light, LightKind,
+    Material, MaterialId, Node, NodeKind, Object, ReflectionModel, Scene, Shape, TextureImage, TextureWrap, Textures,
 };
 
-use crate::gpu::BenchScene;
+use crate::gpu::{BenchScene, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 48;
@@ -159,4 +162,88 @@ fn more_lights_than_the_limit_are_refused_by_name() {
     let error = flatten(&scene, 0.0).expect_err("one too many").to_string();
     assert!(error.contains("the number of lights is 16385, more than the limit of 16384"), "{error}");
     assert!(error.starts_with("Lamp 16384"), "{error}");
+}
+
+/// Least seconds of the passes of light in some frames.
+fn seconds_of_light(flat: &FlatScene, camera: &Camera) -> f64 {
+    let renderer = &mut shared().renderer;
+    renderer.set_strategy(EvalStrategy::Tape);
+    renderer.set_timing(true);
+    let mut best = f64::INFINITY;
+    for _ in 0..7 {
+        renderer.render(flat, &[], camera, [160, 160], &mut |_| true).expect("a picture");
+        let rows = renderer.timings().unwrap_or(&[]).iter();
+        let of_light = rows.filter(|row| ["lights", "shadow", "shade"].contains(&row.label));
+        best = best.min(of_light.map(|row| row.seconds).sum());
+    }
+    renderer.set_timing(false);
+    best
+}
+
+/// Figures; the gates are wide, for times scatter on a busy machine.
+#[test]
+fn lights_cost_what_they_reach() {
+    let scene = gallery::all().into_iter().find(|(name, _)| *name == "random-145").expect("it is shipped").1;
+    let with = |count: usize, power: f64, at: &dyn Fn(f64) -> DVec3| {
+        let mut scene = scene.clone();
+        for i in 0..count {
+            let kind = LightKind::Point { power, radius: 0.0, falloff: Falloff::InverseSquare {} };
+            let light = Light { cast_shadows: false, ..Light::new(kind) };
+            scene.insert(None, usize::MAX, Node::new("Lamp", NodeKind::Light(light)).at(at(i as f64))).expect("room");
+        }
+        flatten(&scene, 0.0).expect("within the limits")
+    };
+    let alone = with(0, 0.0, &|_| DVec3::ZERO);
+    let camera = alone.default_camera(&[], 1.0);
+    let bounds = alone.content(&[]).center();
+    // Ranges of 0.3 m: a lamp high above, and a grid of them through the scene; then such that reach everything.
+    let small = 4.0 * std::f64::consts::PI.powi(2) * 1e-3 * 0.09;
+    let away = with(1, small, &|_| bounds + DVec3::Y * 40.0);
+    let grid = |i: f64| bounds + DVec3::new(i % 16.0 - 7.5, 0.2, (i / 16.0).floor() - 7.5) * 0.4;
+    let [few, many] = [small, 4e4 * small].map(|power| with(256, power, &grid));
+    let [alone, away, few, many] = [&alone, &away, &few, &many].map(|flat| seconds_of_light(flat, &camera));
+    println!("light: {:.2} ms, with a lamp that reaches nothing {:.2}", alone * 1e3, away * 1e3);
+    println!("with 256 small lamps {:.2}, with 256 that reach everything {:.2}", few * 1e3, many * 1e3);
+    assert!(few < 0.7 * many && away < 1.5 * alone, "{alone} {away} {few} {many}");
+}
+
+/// A thousand lights, five hundred materials and two hundred images at once: nothing is left out.
+#[test]
+fn very_many_lights_materials_and_textures_are_all_drawn() {
+    let mut scene = Scene::new();
+    for i in 0..500_u32 {
+        let part = |step: u32, most: u32| f64::from(i * step % most) / f64::from(most);
+        let base_color = [part(37, 101), part(59, 97), part(83, 89)].map(|c| 0.15 + 0.8 * c);
+        let mut material = Material::new(scene.next_material_id(), format!("Matter {i}"), base_color);
+        (material.base_metalness, material.specular_roughness) = (f64::from(i % 2), 0.3 + 0.6 * part(7, 13));
+        if i < 200 {
+            let stripe = |x: u32, y: u32| [(x + i) % 8 * 30, (y + i / 8) % 8 * 30, 255 - i].map(|v| v as u8);
+            let image = Attachment::<TextureImage>::painted(&format!("{i}.png"), [8, 8], stripe);
+            let (color_space, wrap) = (ColorSpace::Srgb, TextureWrap::Repeat);
+            material.textures = Textures::triplanar();
+            if let Textures::Triplanar { color, size, .. } = &mut material.textures {
+                (*color, *size) = (ColorTexture::Image { image, color_space, wrap, scale: 1.0 }, 0.08);
+            }
+        }
+        let object = Object { shape: Shape::Sphere { radius: 0.06 }, material: material.id };
+        scene.insert_material(material).expect("room");
+        let at = DVec3::new(f64::from(i % 25) * 0.1 - 1.2, -0.4, f64::from(i / 25) * 0.1 - 1.1);
+        scene.insert(None, usize::MAX, Node::new("Ball", NodeKind::Object(object)).at(at)).expect("room");
+    }
+    let floor = Object { shape: Shape::Plane {}, material: MaterialId(1) };
+    let floor = Node::new("Floor", NodeKind::Object(floor)).at(DVec3::Y * -0.42);
+    scene.insert(None, 0, floor).expect("room");
+    let kind = LightKind::Point { power: 0.03, radius: 0.02, falloff: Falloff::InverseSquare {} };
+    for i in 0..1_000 {
+        let at = DVec3::new(f64::from(i % 40) * 0.065 - 1.3, 0.0, f64::from(i / 40) * 0.09 - 1.2);
+        add_light(&mut scene, kind, at, DVec3::ZERO);
+    }
+    let flat = flatten(&scene, 0.0).expect("within the limits");
+    assert!(flat.warnings.is_empty(), "{:?}", flat.warnings);
+    assert_eq!((flat.lights.len(), flat.textures.sets.len()), (1_000, 200));
+    let (gpu, reference) = pictures(&scene);
+    let off = difference(&gpu, &reference);
+    assert!(off <= 3, "{off}");
+    let seen: std::collections::BTreeSet<_> = gpu.color.iter().copied().collect();
+    assert!(seen.len() > 500, "{} colors", seen.len());
 }

@@ -212,6 +212,7 @@ impl Random {
                     near,
                     far,
                     aperture: self.number(&limits::APERTURE),
+                    shutter: self.number(&limits::SHUTTER),
                     focus_distance: self.number(&limits::CLIP),
                 })
             }

@@ -3,15 +3,19 @@
 use std::time::Duration;
 
 use glam::{DVec2, DVec3};
+use isolith::export::{StillSettings, Stills};
+use isolith::field::debug_view::ViewMode;
 use isolith::field::light::display::display_color;
 use isolith::field::reference::image::render_reference_at;
-use isolith::field::{FlatScene, GBuffer, NO_LEAF, flatten};
+use isolith::field::{FlatScene, GBuffer, NO_LEAF, Shading, flatten};
 use isolith::gallery;
 use isolith::geometry::{Camera, Lens, SampleView};
+use isolith::jobs::Task;
 use isolith::mesh::MeshLibrary;
-use isolith::render::{EvalStrategy, Film, Gpu, OverlaySettings, Renderer, Slot};
+use isolith::render::{EvalStrategy, Film, Gpu, OverlaySettings, Renderer, Slot, StillWatch};
 use isolith::scene::{
-    DisplaySettings, Material, MaterialId, Node, NodeKind, Object, Scene, Shape, ViewTransform, file,
+    CameraNode, DisplaySettings, KeyInterpolation, Keyframe, Material, MaterialId, Node, NodeKind, Object, ParamPath,
+    ParamValue, Part, Scene, Shape, Track, ViewTransform, file,
 };
 
 use crate::gpu::BenchScene;
@@ -117,7 +121,7 @@ fn meshes_move_with_the_samples_as_fields_do() {
     let camera = flat.cameras[0].camera;
     let mesh = BenchScene { name: "mesh".into(), flat, meshes, camera };
     compare("mesh", &mesh, 16, Lens::default());
-    compare("mesh out of focus", &mesh, 8, Lens { aperture: 0.1, focus_distance: 1.5 });
+    compare("mesh out of focus", &mesh, 8, Lens { aperture: 0.1, focus_distance: 1.5, shutter: 0.0 });
 }
 
 /// The share of each pixel that a ball of radius 1 covers, seen from this distance along its middle.
@@ -214,7 +218,7 @@ fn a_lens_blurs_what_is_not_in_focus() {
     let flat = flatten(&pawn, 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.5);
     let pawn = BenchScene { name: "pawn".into(), flat, meshes: Vec::new(), camera };
-    compare("pawn out of focus", &pawn, 24, Lens { aperture: 0.3, focus_distance: 2.0 });
+    compare("pawn out of focus", &pawn, 24, Lens { aperture: 0.3, focus_distance: 2.0, shutter: 0.0 });
 }
 
 /// Variance along X of the alpha of a small ball 4 m away, in square pixels.
@@ -243,12 +247,75 @@ fn the_circle_of_confusion_has_its_size() {
     let mut renderer = renderer();
     let footprint = camera(4.0, 0.2).footprint(SIZE[1].into());
     let sharp = spread(&mut renderer, Lens::default());
-    let in_focus = spread(&mut renderer, Lens { aperture: 0.2, focus_distance: 4.0 });
+    let in_focus = spread(&mut renderer, Lens { aperture: 0.2, focus_distance: 4.0, shutter: 0.0 });
     assert!((in_focus - sharp).abs() < 0.05, "{in_focus} {sharp}");
     for (focus_distance, diameter) in [(2.0, 0.2), (8.0, 0.1)] {
-        let blurred = spread(&mut renderer, Lens { aperture: 0.2, focus_distance });
+        let blurred = spread(&mut renderer, Lens { aperture: 0.2, focus_distance, shutter: 0.0 });
         let radius: f64 = 0.5 * diameter / (4.0 * footprint);
         let expected = 0.25 * radius * radius;
         assert!((blurred - sharp - expected).abs() < 0.06 * expected, "{focus_distance}: {blurred} {sharp} {expected}");
+    }
+}
+
+/// Horizontal variance of a picture's alpha, in square pixels.
+fn variance(picture: &GBuffer) -> f64 {
+    let xs = (0..).map(|i: u32| f64::from(i % SIZE[0]) + 0.5);
+    let weights: Vec<_> = picture.radiance.iter().map(|[.., a]| f64::from(*a)).zip(xs).collect();
+    let sum: f64 = weights.iter().map(|(a, _)| a).sum();
+    let mean = weights.iter().map(|(a, x)| a * x).sum::<f64>() / sum;
+    weights.iter().map(|(a, x)| a * (x - mean).powi(2)).sum::<f64>() / sum
+}
+
+/// A ball that crosses the view is blurred by its way while the shutter is open, and the rest stays as it is.
+#[test]
+fn a_shutter_blurs_what_moves() {
+    let mut scene = glowing_ball([1.0; 3]);
+    let mut ball = (*scene.nodes()[0]).clone();
+    ball.transform.scale = DVec3::splat(0.1);
+    let path = ParamPath::of_node(ball.id, Part::Transform, "translation");
+    scene.replace(ball).expect("the ball is there");
+    // 2 m/s along X.
+    let key = |time: f64| Keyframe {
+        time,
+        value: ParamValue::Vector(DVec3::X * (2.0 * time - 2.0)),
+        interpolation: KeyInterpolation::Linear,
+    };
+    scene.set_tracks([Track { path, keys: vec![key(0.0), key(2.0)] }]).expect("a track");
+    let eye = DVec3::new(0.0, 0.0, 4.0);
+    let of_shutter = |shutter: f64, samples: u32| {
+        let mut scene = scene.clone();
+        let camera = CameraNode { shutter, fov_y: 14.0, ..CameraNode::default() };
+        scene.insert(None, usize::MAX, Node::new("Camera", NodeKind::Camera(camera)).at(eye)).expect("room");
+        let settings = StillSettings {
+            size: SIZE,
+            camera: None,
+            view_mode: ViewMode::Shaded,
+            shading: Shading::Rendered,
+            film: Film { samples, is_transparent: true, lens: Lens::default() },
+            is_linear: true,
+            has_layers: false,
+            passes: None,
+        };
+        let still = Stills::new(scene, None, settings).at(1.0, &Task::without_cancel("a test")).expect("a still");
+        assert_eq!(still.moments.len(), if shutter > 0.0 { samples as usize - 1 } else { 0 });
+        let all: Vec<_> = still.all_moments().collect();
+        let watch = &mut Silent;
+        (still.camera, renderer().render_moments_for(still.film, &all, SIZE, watch).expect("a picture").0)
+    };
+    let (camera, sharp) = of_shutter(0.0, 32);
+    let (_, blurred) = of_shutter(0.25, 32);
+    let way = 2.0 * 0.25 / (4.0 * camera.footprint(SIZE[1].into()));
+    let (found, expected) = (variance(&blurred) - variance(&sharp), way * way / 12.0);
+    assert!((found - expected).abs() < 0.06 * expected, "{found} {expected}");
+    // Numbers are those of the moment itself.
+    assert!(sharp.depth == blurred.depth && sharp.normal == blurred.normal);
+}
+
+/// Shows nothing.
+struct Silent;
+
+impl StillWatch for Silent {
+    fn progress(&mut self, _share: f32) -> bool {
+        true
     }
 }

@@ -10,7 +10,25 @@
 fn lighting_surface(point: ShadingPoint, pixel: vec2u, ambient: vec3f, open: f32, light_count: u32) -> vec3f {
     let free = occlusion_at(pixel, point.normal);
     var color = point.material.emission + lighting_around(point, free.xyz, ambient) * (open * free.w);
-    for (var i = 0u; i < light_count; i++) {
+    var next = 0u;
+#if LIGHT_TILES
+    // The bits of the pixel's tile; lights without one would add nothing.
+    next = light_count;
+    let words = light_tile_words(light_count);
+    let first = light_tile_first(pixel / LIGHT_TILE, view.width, words);
+    for (var word = 0u; word < words; word += 1u) {
+        var bits = light_tiles[first + word];
+        while bits != 0u {
+            let i = 32u * word + firstTrailingBit(bits);
+            bits &= bits - 1u;
+            let share = shadow_share(i, pixel);
+            if share > 0.0 {
+                color += lighting_reflected(point, lights[i]) * share;
+            }
+        }
+    }
+#end
+    for (var i = next; i < light_count; i++) {
         let share = shadow_share(i, pixel);
         if share > 0.0 {
             color += lighting_reflected(point, lights[i]) * share;

@@ -16,6 +16,20 @@ fn occlusion_up(normal: vec3f) -> vec3f {
     return vec3f(normal.x * normal.y * a, sign + normal.y * normal.y * a, -normal.y);
 }
 
+// How much a ray in the part of a cone is expected to tell: the deviation of what it finds, if this share is
+// visible. Never 0, for cones err.
+fn occlusion_doubt(share: f32) -> f32 {
+    return max(sqrt(max(share * (1.0 - share), 0.0)), 0.1);
+}
+
+// A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit
+// square. The parts are as likely as the weights of the cones.
+fn occlusion_place(cone: u32, unit: vec2f) -> vec2f {
+    let is_middle = cone == 0u;
+    let turn = select((f32(cone) - 1.5 + unit.y) / f32(OCCLUSION_CONES - 1u), unit.y, is_middle) * 6.2831853;
+    return sqrt(select(0.25 + 0.75 * unit.x, 0.25 * unit.x, is_middle)) * vec2f(cos(turn), sin(turn));
+}
+
 // Direction (xyz) and weight of a cone of occlusion around a unit normal. Counterpart of
 // `occlusion_cone` in `src/field/light/occlusion.rs`.
 fn occlusion_cone(normal: vec3f, index: u32) -> vec4f {

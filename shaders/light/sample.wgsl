@@ -14,11 +14,16 @@ fn sample_hash(seed: vec3u) -> vec3u {
     return v;
 }
 
-// Point of the unit disc: the sequence R2 (Roberts, "The Unreasonable Effectiveness of Quasirandom
+// Point of the unit square: the sequence R2 (Roberts, "The Unreasonable Effectiveness of Quasirandom
 // Sequences", 2018), shifted for each pixel and light.
-fn sample_disc(pixel: vec2u, light: u32, sample: u32) -> vec2f {
+fn sample_unit(pixel: vec2u, light: u32, sample: u32) -> vec2f {
     let shifted = sample_hash(vec3u(pixel, light)).xy + vec2u(0xc13fa9a9u, 0x91e10da5u) * sample;
-    let place = vec2f(shifted >> vec2u(8u)) / 16777216.0;
+    return vec2f(shifted >> vec2u(8u)) / 16777216.0;
+}
+
+// The same on the unit disc.
+fn sample_disc(pixel: vec2u, light: u32, sample: u32) -> vec2f {
+    let place = sample_unit(pixel, light, sample);
     let radius = sqrt(place.x);
     let angle = 6.2831853 * place.y;
     return radius * vec2f(cos(angle), sin(angle));

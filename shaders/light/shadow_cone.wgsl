@@ -12,8 +12,80 @@ struct ShadowPoint {
     normal: vec3f,
 }
 
+// Number of rays to the environment: one in each sample after the first.
+fn shadow_ambient_rays() -> u32 {
+    return select(0u, 1u, settings.cones > 0u && settings.sample > 0u);
+}
+
+// Where the share of a task is stored: of a light, or of the ray to the environment behind the cones.
+fn shadow_slot(task: u32) -> u32 {
+    return select(task, (settings.lights + 3u) / 4u * 4u + OCCLUSION_CONES, task == settings.lights);
+}
+
+// Begins the march of a task.
+fn shadow_march_begin(task: u32, is_ray: bool) -> ConeMarch {
+    var march = cone_march_begin();
+    march.state = select(0u, CONE_RAY, is_ray || task == settings.lights);
+    return march;
+}
+
+// The direction of a ray to the environment.
+struct AmbientRay {
+    // Point of the unit disc below it.
+    place: vec2f,
+    // The cone to whose part of the hemisphere it belongs.
+    cone: u32,
+}
+
+// Rays go to the part of a cone as often as it weighs and is in doubt.
+fn shadow_ambient_direction(point: ShadowPoint) -> AmbientRay {
+    let first = (point.pixel.y * view.width + point.pixel.x) * settings.stride;
+    let slot = shadow_slot(settings.lights) - OCCLUSION_CONES;
+    var parts: array<f32, OCCLUSION_CONES>;
+    var all = 0.0;
+    for (var i = 0u; i < OCCLUSION_CONES; i += 1u) {
+        let at = slot + i;
+        let share = f32(shares[first + at / 4u] >> (8u * (at & 3u)) & 0xffu) / 255.0;
+        parts[i] = occlusion_cone(point.normal, i).w * occlusion_doubt(share);
+        all += parts[i];
+    }
+    let unit = sample_unit(point.pixel, settings.lights, settings.sample);
+    var left = unit.x * all;
+    var chosen = OCCLUSION_CONES;
+    var within = 0.0;
+    for (var i = 0u; i < OCCLUSION_CONES; i += 1u) {
+        let is_here = chosen == OCCLUSION_CONES && (left < parts[i] || i + 1u == OCCLUSION_CONES);
+        chosen = select(chosen, i, is_here);
+        within = select(within, left / parts[i], is_here);
+        left -= parts[i];
+    }
+    return AmbientRay(occlusion_place(chosen, vec2f(clamp(within, 0.0, 1.0), unit.y)), chosen);
+}
+
+// Stores the share of a task; of the ray to the environment, also which cone it was about.
+fn shadow_store_task(first: u32, point: ShadowPoint, task: u32, share: f32) {
+    shadow_store(first, shadow_slot(task), share);
+    if task == settings.lights {
+        shadow_store(first, shadow_slot(task) + 1u, f32(shadow_ambient_direction(point).cone) / 255.0);
+    }
+}
+
+// A ray of occlusion.
+fn shadow_ambient_ray(point: ShadowPoint) -> SceneCone {
+    let place = shadow_ambient_direction(point).place;
+    let height = sqrt(max(1.0 - dot(place, place), 1e-6));
+    let around = occlusion_right(point.normal) * place.x + occlusion_up(point.normal) * place.y;
+    let along = normalize(around + point.normal * height);
+    let start = scene_surface_ray(point.position, point.normal, along, point.depth);
+    let least = RAY_STEP * view.footprint * point.depth;
+    return SceneCone(start.origin, 0.0, along, settings.occlusion_radius, 0.0, 0.0, least, 0.0, point.normal);
+}
+
 // The cone to a light; it ends at 0 if there is nothing to do. `is_ray`: a ray to a point of it.
 fn shadow_cone(point: ShadowPoint, task: u32, is_ray: bool) -> SceneCone {
+    if task == settings.lights {
+        return shadow_ambient_ray(point);
+    }
     let light = lights[task];
     let toward = light_toward(light, point.position);
     let spread = light_spread(light, toward.w);

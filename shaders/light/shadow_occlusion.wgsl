@@ -6,6 +6,8 @@ const OCCLUSION_NEAR: f32 = 0.0833333;
 const OCCLUSION_FAR: f32 = 0.76;
 const OCCLUSION_GROWTH: f32 = 3.0;
 const OCCLUSION_SINE: f32 = 0.5;
+// Most spheres of a cone.
+const OCCLUSION_SPHERES: u32 = 3u;
 
 // A point above a surface, and the distances of the evaluations in a cone.
 struct OcclusionPoint {
@@ -66,33 +68,66 @@ fn occlusion_pass(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, is_f
     march.t = select(next, at.near, is_over);
 }
 
+fn occlusion_lower(march: ptr<function, OcclusionMarch>, cone: u32, ratio: f32) {
+    march.low = select(march.low, min(march.low, vec3f(ratio)), vec3u(0u, 1u, 2u) == vec3u(cone));
+    march.high = select(march.high, min(march.high, vec3f(ratio)), vec3u(3u, 4u, 5u) == vec3u(cone));
+}
+
+fn occlusion_begin(at: OcclusionPoint, is_empty: bool) -> OcclusionMarch {
+    var march = OcclusionMarch(vec3f(1.0), vec3f(1.0), 0u, OCCLUSION_CONES, at.near, is_empty, OCCLUSION_CONES);
+#if MESH_RAYS
+    march.meshes = select(0u, OCCLUSION_CONES, is_empty);
+#end
+    return march;
+}
+
+// Compares the cones with the meshes, one after the other, as long as the invocation may search; once all
+// components are done. Behind the first triangle on the axis, distances count as those within a solid.
+fn occlusion_meshes(at: OcclusionPoint, march: ptr<function, OcclusionMarch>) {
+#if MESH_RAYS
+    while march.ended && march.meshes < OCCLUSION_CONES && scene_has_mesh_visits() {
+        let axis = occlusion_cone(at.normal, march.meshes).xyz;
+        let stop = mesh_rays_hit(Ray(at.p, 0.0, axis), 0.0, at.far);
+        var ratio = 1.0;
+        var t = at.near;
+        for (var i = 0u; i < OCCLUSION_SPHERES; i += 1u) {
+            let away = mesh_near_distance(at.p + axis * t, OCCLUSION_SINE * t) / (OCCLUSION_SINE * t);
+            let signed = select(away, -away, stop.mesh != NO_MESH && t > stop.t);
+            ratio = select(ratio, min(ratio, signed), t <= at.far);
+            t *= OCCLUSION_GROWTH;
+        }
+        occlusion_lower(march, march.meshes, ratio);
+        march.meshes += 1u;
+    }
+#end
+}
+
 // Takes the ratio of field and radius into account.
 fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, ratio: f32) {
-    march.low = select(march.low, min(march.low, vec3f(ratio)), vec3u(0u, 1u, 2u) == vec3u(march.cone));
-    march.high = select(march.high, min(march.high, vec3f(ratio)), vec3u(3u, 4u, 5u) == vec3u(march.cone));
+    occlusion_lower(march, march.cone, ratio);
     let next = march.t * OCCLUSION_GROWTH;
     let is_over = next > at.far || ratio <= -1.0;
     march.cone += select(0u, 1u, is_over);
     march.t = select(next, at.near, is_over);
 }
 
-// Each round finds the next evaluation first: invocations that run together then evaluate together.
+// Each round finds the next evaluation first: invocations that run together then evaluate together. A pixel
+// is open unless it has ended in another dispatch, which has stored its shares.
 @compute @workgroup_size(8, 8)
 fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
     let pixel = dispatch.origin + id.xy;
-    // Not ended in another dispatch, which has stored its shares.
     var is_open = all(pixel < dispatch.end);
     let own = shadow_place(id.xy, 1u);
     let point = shadow_point(pixel);
     let at = occlusion_point(point);
-    var march = OcclusionMarch(vec3f(1.0), vec3f(1.0), 0u, OCCLUSION_CONES, at.near, point.depth >= BACKGROUND);
+    var march = occlusion_begin(at, point.depth >= BACKGROUND);
 #if SCENE_COPIES
     var copies = copies_begin();
     var walk: CopyWalk;
 #end
     if is_open && dispatch.relaunch == 1u {
         march = shadow_load_occlusion(own);
-        is_open = !march.ended;
+        is_open = !shadow_occlusion_ended(march);
 #if SCENE_COPIES
         copies = shadow_load_copies(own);
 #end
@@ -150,6 +185,7 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
             occlusion_take(at, &march, (f + select(0.0, field_slack(), f > 0.0)) / size);
         }
     }
+    occlusion_meshes(at, &march);
     if is_open {
 #if SCENE_COPIES
         copies_leave_around(&copies, &walk, march.cone < OCCLUSION_CONES);

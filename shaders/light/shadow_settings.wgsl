@@ -1,5 +1,6 @@
 // Settings of shadows and occlusion, and the layout of their shares: per pixel one byte for each
-// light, in whole words, then one for each cone of occlusion.
+// light, in whole words, then one for each cone of occlusion, and two for the ray of a
+// sample.
 
 struct ShadowSettings {
     // Lights with shadows: the first ones.

@@ -56,6 +56,8 @@ fn shadow_clear(first: u32) {
     for (var i = 0u; i < (settings.lights + 3u) / 4u; i += 1u) {
         shares[first + i] = 0xffffffffu;
     }
+    // Without occlusion there is a light.
+    shadow_store(first, select(0u, shadow_slot(settings.lights), settings.cones > 0u), 1.0);
 }
 
 // The six cones of occlusion.
@@ -68,13 +70,21 @@ struct OcclusionMarch {
     // The cone in it; OCCLUSION_CONES for the next component.
     cone: u32,
     t: f32,
+    // Whether all components are done.
     ended: bool,
+    // The next cone to be compared with the meshes; OCCLUSION_CONES once all are.
+    meshes: u32,
 }
 
 fn shadow_load_occlusion(own: u32) -> OcclusionMarch {
     let low = bitcast<vec3f>(vec3u(states[own + 4u], states[own + 5u], states[own + 6u]));
     let high = bitcast<vec3f>(vec3u(states[own + 7u], states[own + 8u], states[own + 9u]));
-    return OcclusionMarch(low, high, states[own], states[own + 1u], bitcast<f32>(states[own + 2u]), states[own + 3u] == 1u);
+    let t = bitcast<f32>(states[own + 2u]);
+    return OcclusionMarch(low, high, states[own], states[own + 1u], t, states[own + 3u] == 1u, states[own + 10u]);
+}
+
+fn shadow_occlusion_ended(march: OcclusionMarch) -> bool {
+    return march.ended && march.meshes >= OCCLUSION_CONES;
 }
 
 // Stores the shares of the cones of occlusion, or the state if they have not ended.
@@ -82,7 +92,8 @@ fn shadow_leave_occlusion(own: u32, march: OcclusionMarch, first: u32) {
     let low = march.low;
     let high = march.high;
     states[own + 3u] = select(0u, 1u, march.ended);
-    if march.ended {
+    states[own + 10u] = march.meshes;
+    if shadow_occlusion_ended(march) {
         let slot = (settings.lights + 3u) / 4u * 4u;
         shadow_store(first, slot, cone_share(low.x));
         shadow_store(first, slot + 1u, cone_share(low.y));

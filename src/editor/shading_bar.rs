@@ -31,8 +31,11 @@ pub fn show(state: &mut EditorState, ui: &mut Ui) {
     let chosen = frame.show(&mut bar, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut chosen = menu(state, ui);
-        for shading in Shading::ALL.into_iter().rev() {
-            if button(ui, shading, state.view.lit_by() == Some(shading)).clicked() {
+        let shown = state.view.lit_by();
+        for main in Shading::MAIN.into_iter().rev() {
+            // Its button shows the kind of solid that is chosen.
+            let shading = shown.filter(|shown| shown.main() == main).unwrap_or(main);
+            if button(ui, shading, shown == Some(shading)).clicked() {
                 chosen = Some(Command::ShowShading(shading));
             }
         }
@@ -89,6 +92,11 @@ fn ball_color(shading: Shading, [x, y, z]: [f32; 3]) -> Color32 {
     };
     match shading {
         Shading::Solid => of([0.80, 0.80, 0.78], 0.32 + 0.68 * key, [0.06 * gloss; 3]),
+        Shading::Porcelain => of([0.95, 0.95, 0.93], 0.42 + 0.5 * key, [0.7 * gloss; 3]),
+        Shading::Bronze => of([0.86, 0.52, 0.25], 0.2 + 0.8 * key.powi(2), [0.6 * gloss, 0.5 * gloss, 0.4 * gloss]),
+        Shading::Wax => {
+            of([0.70, 0.16, 0.11], 0.4 + 0.7 * key, [0.3 * gloss + 0.25 * (1.0 - z).powi(2), 0.3 * gloss, 0.3 * gloss])
+        }
         Shading::Material => of([0.97, 0.55, 0.26], 0.42 + 0.58 * key, [0.5 * gloss; 3]),
         Shading::Rendered => {
             let rim = toward([0.72, 0.45, 0.1]).powi(3);

@@ -267,11 +267,11 @@ impl ViewState {
 
     /// Shows the next shading; the first after the last.
     pub fn cycle_shading(&mut self) {
-        let next = match self.lit_by() {
+        let next = match self.lit_by().map(Shading::main) {
             None => self.shading,
             Some(Shading::Solid) => Shading::Material,
             Some(Shading::Material) => Shading::Rendered,
-            Some(Shading::Rendered) => Shading::Solid,
+            Some(_) => Shading::Solid,
         };
         self.show_shading(next);
     }

@@ -14,12 +14,17 @@ use crate::geometry::{Camera, Lens};
 use crate::jobs::Task;
 use crate::mesh::TriangleMesh;
 use crate::render::driver::loop_iterations;
-use crate::render::{AdapterChoice, EvalStrategy, Film, Gpu, RenderError, Renderer, StillWatch, TracedParts};
+use crate::render::{
+    AdapterChoice, EvalStrategy, Film, Gpu, RenderError, Renderer, SampleMoment, StillWatch, TracedParts,
+};
 use crate::scene::{NodeId, Scene};
 use crate::session::PreparedScene;
 
 /// Most pixels by which a lens may move the picture: f32 keeps its place to a thousandth of a pixel.
 const MOST_BLUR: f64 = 8_192.0;
+
+/// Most moments of a still, all of which are prepared before it is drawn; more samples take turns.
+const MOST_MOMENTS: u32 = 64;
 
 /// What pictures show.
 #[derive(Clone, Debug)]
@@ -60,6 +65,8 @@ pub struct Still {
     pub meshes: Vec<Option<Arc<TriangleMesh>>>,
     /// The view.
     pub camera: Camera,
+    /// The other moments while the shutter is open, for the samples after the first.
+    pub moments: Vec<Moment>,
     /// Samples, background and lens.
     pub film: Film,
     /// The settings.
@@ -68,6 +75,30 @@ pub struct Still {
     pub names: Arc<BTreeMap<u64, String>>,
     /// Warnings for the artist.
     pub warnings: Vec<Warning>,
+}
+
+/// A scene at another moment of a still.
+#[derive(Clone)]
+pub struct Moment {
+    /// The scene in its shading.
+    pub flat: Arc<FlatScene>,
+    /// The meshes that could be loaded.
+    pub meshes: Vec<Option<Arc<TriangleMesh>>>,
+    /// The view.
+    pub camera: Camera,
+}
+
+impl Still {
+    /// The moment of the picture, and then the others while the shutter is open.
+    pub fn all_moments(&self) -> impl Iterator<Item = SampleMoment<'_>> {
+        let Self { flat, meshes, camera, .. } = self;
+        let others = self.moments.iter().map(|moment| SampleMoment {
+            flat: &moment.flat,
+            meshes: &moment.meshes,
+            camera: &moment.camera,
+        });
+        std::iter::once(SampleMoment { flat, meshes, camera }).chain(others)
+    }
 }
 
 /// A picture as numbers.
@@ -106,7 +137,24 @@ impl Stills {
         check_passes(&flat, &camera, &settings, &names)?;
         let film = with_lens(settings.film, lens, &camera, settings.size[1])?;
         let flat = flat.shaded(settings.shading);
-        Ok(Still { flat, meshes, camera, film, settings, names, warnings })
+        let moments = self.moments(time, film, task)?;
+        Ok(Still { flat, meshes, camera, moments, film, settings, names, warnings })
+    }
+
+    /// The scene at the moments of the samples after the first, while the shutter is open.
+    fn moments(&mut self, time: f64, film: Film, task: &Task) -> Result<Vec<Moment>, ExportError> {
+        if film.lens.shutter <= 0.0 {
+            return Ok(Vec::new());
+        }
+        let settings = self.settings.clone();
+        let mut moment = |sample: u32| {
+            let prepared = self.prepared_at(time + film.lens.moment(sample), task)?;
+            let flat = Arc::clone(&prepared.flat);
+            let (meshes, _) = flat.load_meshes(&mut prepared.library);
+            let (camera, _) = choose_camera(&flat, &meshes, &settings)?;
+            Ok(Moment { flat: flat.shaded(settings.shading), meshes, camera })
+        };
+        (1..film.samples.min(MOST_MOMENTS)).map(&mut moment).collect()
     }
 
     fn prepared_at(&mut self, time: f64, task: &Task) -> Result<&mut PreparedScene, ExportError> {
@@ -152,7 +200,10 @@ impl StillPainter {
         let mut watch = Shared { watch, share: share_of_picture };
         let accumulates = film.samples > 1 || film.is_transparent || settings.is_linear;
         let drawn = match accumulates {
-            true => renderer.render_samples_for(*film, flat, meshes, camera, settings.size, &mut watch),
+            true => {
+                let moments: Vec<_> = still.all_moments().collect();
+                renderer.render_moments_for(*film, &moments, settings.size, &mut watch)
+            }
             false => {
                 let progress = &mut |share| watch.progress(share);
                 renderer.render_as(view_mode, flat, meshes, camera, settings.size, progress)

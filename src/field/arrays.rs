@@ -12,6 +12,7 @@ use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
 use crate::light::environment_map::PlacedMap;
+use crate::studio::StudioLook;
 use isolith_geometry::{Aabb, Camera, Lens};
 use isolith_mesh::ModelPose;
 use isolith_scene::{
@@ -399,6 +400,8 @@ pub struct FlatScene {
     pub lights: Vec<FlatLight>,
     /// Visible meshes.
     pub meshes: Vec<FlatMesh>,
+    /// What lights a scene without lights.
+    pub studio: StudioLook,
     /// All cameras.
     pub cameras: Vec<FlatCamera>,
     /// The environment.

@@ -6,7 +6,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::arrays::{FlatLight, FlatScene};
-use isolith_geometry::Camera;
+use super::studio::StudioLight;
+use isolith_geometry::{Aabb, Camera};
 use isolith_scene::{Falloff, LightKind};
 
 /// Radiance of a white surface below which a light ends. Within its range a light is weaker than by the inverse square
@@ -155,19 +156,20 @@ fn reach(color: DVec3) -> f64 {
 }
 
 /// The lights that may reach what the camera sees in a picture of `size` pixels, as seen from the camera. A scene
-/// without lights, and without an image or color around it, gets a studio setup that is fixed to the viewer: a key light from over the left shoulder and a weak
-/// one from the right.
+/// without lights, and without an image or color around it, gets the lights of a
+/// studio, which are fixed to the viewer.
 pub fn gpu_lights(flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Vec<GpuLight> {
     if flat.lights.is_empty() && flat.environment_map.is_none() {
-        let world = |direction: DVec3| camera.rotation * direction;
-        return vec![
-            GpuLight::directional(world(DVec3::new(0.55, -0.75, -0.9)), DVec3::new(1.12, 1.08, 1.02)),
-            GpuLight::directional(world(DVec3::new(-0.9, -0.1, -0.5)), DVec3::new(0.16, 0.20, 0.28)),
-        ];
+        let light = |(direction, color, radius): &StudioLight| GpuLight {
+            radius: *radius as f32,
+            ..GpuLight::directional(camera.rotation * DVec3::from(*direction), DVec3::from(*color))
+        };
+        return flat.studio.lights().iter().map(light).collect();
     }
     let sides = view_sides(camera, size);
     let lights = flat.lights.iter().map(|light| GpuLight::new(light, camera.position));
-    let mut lights: Vec<_> = lights.filter(|light| may_reach(light, &sides, camera)).collect();
+    let mut lights: Vec<_> =
+        lights.filter(|light| may_reach(light, &sides, camera) && meets_content(flat, light, &sides, camera)).collect();
     // Those with shadows first: shares exist for these alone.
     lights.sort_by_key(|light| 1 - light.cast_shadows);
     lights
@@ -200,6 +202,43 @@ fn may_reach(light: &GpuLight, sides: &[DVec3; 5], camera: &Camera) -> bool {
     // More than rounding moves it.
     let range = f64::from(light.range) * 1.001 + position.length() * 1e-5;
     position.length() - range < camera.far && sides.iter().all(|side| side.dot(position) > -range)
+}
+
+/// Whether the light's range meets bounds of something that is in view. Meshes may be anywhere: their bounds are not
+/// known here.
+fn meets_content(flat: &FlatScene, light: &GpuLight, sides: &[DVec3; 5], camera: &Camera) -> bool {
+    if light.kind == GpuLight::DIRECTIONAL || !flat.meshes.is_empty() || flat.components.is_empty() {
+        return true;
+    }
+    let position = DVec3::from(light.position.map(f64::from));
+    let range = f64::from(light.range) * 1.001 + position.length() * 1e-5;
+    let center = camera.position + position;
+    let meets = |bounds: &Aabb| {
+        let (middle, half) = (bounds.center() - camera.position, bounds.half());
+        let is_seen = |side: &DVec3| side.dot(middle) + side.abs().dot(half) >= 0.0;
+        bounds.distance(center) <= range && (!bounds.is_finite() || sides.iter().all(is_seen))
+    };
+    let hierarchy = flat.hierarchy();
+    let meets_unbounded = hierarchy.unbounded.iter().any(|item| {
+        let component = &flat.components[*item as usize];
+        let height = |[x, y, z, d]: [f64; 4]| DVec3::new(x, y, z).dot(center - component.origin) + d;
+        component.half_space.map_or(0.0, height) <= range
+    });
+    if meets_unbounded || flat.instancers.iter().any(|instancer| meets(&instancer.world_bounds())) {
+        return true;
+    }
+    let mut open: Vec<usize> = (0..hierarchy.nodes.len().min(1)).collect();
+    while let Some(index) = open.pop() {
+        let node = &hierarchy.nodes[index];
+        if !meets(&node.bounds) {
+            continue;
+        }
+        if node.is_leaf() {
+            return true;
+        }
+        open.extend([node.link as usize, index + 1]);
+    }
+    false
 }
 
 #[cfg(test)]

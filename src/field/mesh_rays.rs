@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::coverage::{PixelSample, coverage_layer, coverage_threshold};
 use super::{FlatScene, MESH_BIT};
+use glam::DVec3;
 use isolith_geometry::Ray;
 use isolith_mesh::{MeshHit, TriangleMesh};
 
@@ -36,6 +37,21 @@ pub fn mesh_rays_hit(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, fa
 /// Whether a triangle stops light between `near` and `far`.
 pub fn mesh_rays_blocked(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> bool {
     mesh_rays_hit(flat, meshes, ray, near, far).is_some()
+}
+
+/// Distance from `p` to the nearest triangle that stops light, in meters; `within` if there is none so near. Counterpart
+/// of `mesh_near_distance` in `shaders/scene/mesh_near.wgsl`.
+pub fn mesh_rays_distance(flat: &FlatScene, meshes: &Meshes, p: DVec3, within: f64) -> f64 {
+    let of_mesh = |best: f64, (placed, mesh): (&crate::FlatMesh, &Option<Arc<TriangleMesh>>)| {
+        let local_from_world = placed.world_from_local.inverse();
+        match mesh {
+            Some(mesh) if local_from_world.is_finite() => {
+                mesh.distance_to_solid(local_from_world.transform_point3(p), &placed.world_from_local.matrix3, best)
+            }
+            _ => best,
+        }
+    };
+    flat.meshes.iter().zip(meshes).fold(within, of_mesh)
 }
 
 fn trace_covering(

@@ -28,7 +28,7 @@
 //! | `meshes` | the loaded meshes of a scene |
 //! | `mesh_rays` | intersections of rays with meshes |
 //! | `view` | the default view of a scene |
-//! | `shading` | the scene in clay, or under a studio light |
+//! | `shading`, `studio` | the scene under a studio light, also in one material |
 //! | `debug_view` | view modes besides shading, and their colors |
 //!
 //! # Example
@@ -104,6 +104,7 @@ pub mod scene_eval;
 mod shading;
 mod stack;
 pub mod standpoint;
+pub mod studio;
 mod survey;
 mod tape;
 mod texel_words;

@@ -79,7 +79,7 @@ fn place_camera(node: &Node, camera: &CameraNode, world_from_local: &DAffine3) -
         id: node.id,
         name: node.name.clone(),
         camera: camera_at(camera, world_from_local),
-        lens: Lens { aperture: camera.aperture, focus_distance: camera.focus_distance },
+        lens: Lens { aperture: camera.aperture, focus_distance: camera.focus_distance, shutter: camera.shutter },
     }
 }
 

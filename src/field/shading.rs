@@ -9,13 +9,20 @@ use super::arrays::FlatScene;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
 use super::light::environment_map::{EnvironmentMap, PlacedMap};
-use isolith_scene::{DisplaySettings, Environment, EnvironmentKind, Material, Shadowing};
+use super::studio::StudioLook;
+use isolith_scene::{DisplaySettings, Environment, EnvironmentKind, Shadowing};
 
 /// How a lit picture shows a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
     /// Its shapes: one clay for everything, under a studio light.
     Solid,
+    /// Its shapes in white glaze, under large soft lights.
+    Porcelain,
+    /// Its shapes in metal.
+    Bronze,
+    /// Its shapes in red wax, whose edges shine.
+    Wax,
     /// Its materials, under a studio light.
     Material,
     /// Its materials under its own lights.
@@ -25,12 +32,36 @@ pub enum Shading {
 
 impl Shading {
     /// Every shading, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Solid, Self::Material, Self::Rendered];
+    pub const ALL: [Self; 6] = [Self::Solid, Self::Porcelain, Self::Bronze, Self::Wax, Self::Material, Self::Rendered];
+    /// Those that a click reaches at once, and that follow each other.
+    pub const MAIN: [Self; 3] = [Self::Solid, Self::Material, Self::Rendered];
+
+    /// The one of [`Shading::MAIN`] that it is a kind of.
+    pub fn main(self) -> Self {
+        match self {
+            Self::Solid | Self::Porcelain | Self::Bronze | Self::Wax => Self::Solid,
+            other => other,
+        }
+    }
+
+    /// What it lights a scene with, unless it is rendered.
+    fn studio(self) -> StudioLook {
+        match self {
+            Self::Porcelain => StudioLook::Porcelain,
+            Self::Bronze => StudioLook::Bronze,
+            Self::Wax => StudioLook::Wax,
+            Self::Material => StudioLook::Preview,
+            Self::Solid | Self::Rendered => StudioLook::Clay,
+        }
+    }
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Solid => "solid",
+            Self::Porcelain => "porcelain",
+            Self::Bronze => "bronze",
+            Self::Wax => "wax",
             Self::Material => "material",
             Self::Rendered => "rendered",
         }
@@ -40,6 +71,9 @@ impl Shading {
     pub fn label(self) -> &'static str {
         match self {
             Self::Solid => "Solid",
+            Self::Porcelain => "Solid, porcelain",
+            Self::Bronze => "Solid, bronze",
+            Self::Wax => "Solid, wax",
             Self::Material => "Material Preview",
             Self::Rendered => "Rendered",
         }
@@ -48,6 +82,9 @@ impl Shading {
     /// One sentence about what it shows.
     pub fn help(self) -> &'static str {
         match self {
+            Self::Porcelain => "Shapes only: white glaze, whose reflections show how smooth a surface is",
+            Self::Bronze => "Shapes only: metal, whose highlights show creases and bumps",
+            Self::Wax => "Shapes only: red wax, whose edges shine",
             Self::Solid => "Shapes only: clay under a studio light that follows the view",
             Self::Material => "The materials under a studio light that follows the view, without the scene's lights",
             Self::Rendered => "The materials under the lights and the environment of the scene",
@@ -72,11 +109,12 @@ impl FlatScene {
         }
         let mut shown = Self::clone(self);
         shown.lights.clear();
-        shown.environment = studio(shading);
+        shown.studio = shading.studio();
+        shown.environment = shown.studio.environment();
         shown.display = DisplaySettings::default();
         shown.environment_map = None;
-        if shading == Shading::Solid {
-            shown.wear(clay());
+        if shading.main() == Shading::Solid {
+            shown.wear(shown.studio.material());
         }
         Arc::new(shown)
     }
@@ -120,26 +158,12 @@ impl FlatScene {
     }
 }
 
-/// The clay of [`Shading::Solid`]: a warm gray between dark and light, so that both lights and shades show.
-fn clay() -> FlatMaterial {
-    FlatMaterial::new(&Material { base_color: [0.46, 0.45, 0.435], specular_roughness: 0.55, ..Material::default() })
-}
-
-/// Neutral surroundings. Those of [`Shading::Solid`] are dark, so that the outline of a shape shows.
-fn studio(shading: Shading) -> Environment {
-    let gray = |v: f64| [v, v * 1.02, v * 1.06];
-    match shading {
-        Shading::Solid => Environment::sky(gray(0.03), gray(0.065), gray(0.22)),
-        _ => Environment::sky(gray(0.11), gray(0.32), gray(0.34)),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{flatten, gpu_lights};
     use isolith_geometry::Camera;
-    use isolith_scene::{Light, MaterialId, Node, NodeKind, Object, Scene, ShapeKind};
+    use isolith_scene::{Light, Material, MaterialId, Node, NodeKind, Object, Scene, ShapeKind};
 
     /// Balls of two materials and a sun.
     fn scene() -> Arc<FlatScene> {
@@ -168,7 +192,7 @@ mod tests {
         }
         assert_eq!(material.materials, flat.materials);
         assert_eq!(solid.materials.len(), flat.materials.len());
-        assert!(solid.materials.iter().all(|m| *m == clay() && m.emission == [0.0; 3]));
+        assert!(solid.materials.iter().all(|m| *m == StudioLook::Clay.material() && m.emission == [0.0; 3]));
     }
 
     #[test]
@@ -180,10 +204,25 @@ mod tests {
     }
 
     #[test]
+    fn kinds_of_solid_differ_in_material_and_light() {
+        let camera = Camera::looking_at(DVec3::Z * 9.0, DVec3::ZERO, 0.7);
+        let solids: Vec<_> = Shading::ALL.into_iter().filter(|shading| shading.main() == Shading::Solid).collect();
+        assert_eq!(solids.len(), 4);
+        let shown = solids.iter().map(|shading| scene().shaded(*shading));
+        let looks: Vec<_> = shown.map(|flat| (flat.materials[0], gpu_lights(&flat, &camera, [64, 64]))).collect();
+        for (at, look) in looks.iter().enumerate() {
+            assert!(looks[at + 1..].iter().all(|other| other.0 != look.0 && other.1 != look.1), "{:?}", solids[at]);
+        }
+    }
+
+    #[test]
     fn names_are_read_back() {
         for shading in Shading::ALL {
             assert_eq!(shading.name().parse(), Ok(shading));
         }
-        assert_eq!("matcap".parse::<Shading>(), Err("it is none of solid, material, rendered".to_owned()));
+        assert_eq!(
+            "matcap".parse::<Shading>(),
+            Err("it is none of solid, porcelain, bronze, wax, material, rendered".to_owned())
+        );
     }
 }

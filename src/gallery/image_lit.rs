@@ -9,8 +9,7 @@ const STUDIO: [u32; 2] = [128, 64];
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.0; 3], [0.0; 3], [0.0; 3]);
     builder.shade(Shadowing::default());
-    let image = Attachment::<EnvironmentImage>::painted("studio.hdr", STUDIO, studio);
-    builder.environment(EnvironmentKind::Image { image, strength: 1.0, rotation: 0.0 });
+    builder.environment(studio_light(1.0, 0.0));
     let floor = builder.surface("Table", [0.16, 0.17, 0.19], 0.0, 0.45);
     builder.add(None, object("Table", cuboid(9.0, 0.3, 5.2, 0.12), floor).at(v(0.0, -0.15, 0.0)));
     for row in 0..3 {
@@ -28,6 +27,12 @@ pub(super) fn scene() -> Scene {
     }
     builder.camera([0.0, 5.2, 9.0], [0.0, 0.2, -0.1], 34.0);
     builder.finish()
+}
+
+/// The image of the studio as an environment; `rotation` in degrees.
+pub(super) fn studio_light(strength: f64, rotation: f64) -> EnvironmentKind {
+    let image = Attachment::<EnvironmentImage>::painted("studio.hdr", STUDIO, studio);
+    EnvironmentKind::Image { image, strength, rotation }
 }
 
 /// A gray room with two softboxes, a strip light, a warm lamp and a dark floor.

@@ -16,12 +16,15 @@ mod fractals;
 mod image_lit;
 mod instancing;
 mod keyframes;
+mod light_figures;
 mod lights;
+mod machine;
 mod materials;
 mod mesh_and_fields;
 mod modifiers;
 mod operators;
 mod painted;
+mod puppet;
 mod random_groups;
 mod scene_builder;
 mod sculptures;
@@ -87,6 +90,9 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("shadows", shadows::scene()),
+        ("light-figures", light_figures::scene()),
+        ("machine", machine::scene()),
+        ("puppet", puppet::scene()),
         ("keyframes", keyframes::scene()),
         ("dynamics-2d", instancing::dynamics()),
         ("terrain", instancing::terrain()),

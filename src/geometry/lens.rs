@@ -13,6 +13,8 @@ pub struct Lens {
     pub aperture: f64,
     /// Distance of the sharp plane, along the view axis, in meters.
     pub focus_distance: f64,
+    /// How long it is open, in seconds, around the moment of the picture; 0 stops all motion.
+    pub shutter: f64,
 }
 
 /// The view of one sample: its camera, and its place in the pixels of the picture.
@@ -32,7 +34,13 @@ impl From<Camera> for SampleView {
 }
 
 impl Lens {
-    /// Whether it blurs anything.
+    /// The moment of a sample after that of the first one, in seconds: within half the time that the shutter is open. The
+    /// moments of any number of samples cover that time evenly (multiples of the golden ratio).
+    pub fn moment(&self, sample: u32) -> f64 {
+        self.shutter * ((0.5 + 0.618_033_988_75 * f64::from(sample)).fract() - 0.5)
+    }
+
+    /// Whether it blurs what is not in the sharp plane.
     pub fn is_open(&self) -> bool {
         self.aperture > 0.0
     }
@@ -67,7 +75,7 @@ mod tests {
     #[test]
     fn what_is_in_focus_stays_in_its_pixel() {
         let camera = Camera::looking_at(DVec3::new(3.0, 2.0, 5.0), DVec3::ZERO, 0.6);
-        let lens = Lens { aperture: 0.3, focus_distance: 4.0 };
+        let lens = Lens { aperture: 0.3, focus_distance: 4.0, shutter: 0.0 };
         let (size, pixel) = (DVec2::new(60.0, 40.0), DVec2::new(13.25, 31.5));
         let seen = camera.ray(pixel, size);
         let forward = camera.rotation * DVec3::NEG_Z;
@@ -90,5 +98,18 @@ mod tests {
         assert!(farthest > 0.14, "{farthest}");
         let pinhole = Lens::default().view(&camera, 40, 7, 64);
         assert_eq!((pinhole.camera, pinhole.offset), (camera, pixel_jitter(7)));
+    }
+
+    #[test]
+    fn moments_cover_the_time_that_the_shutter_is_open() {
+        let lens = Lens { shutter: 0.4, ..Lens::default() };
+        assert_eq!(lens.moment(0), 0.0);
+        for count in [16, 64] {
+            let mut moments: Vec<_> = (0..count).map(|sample| lens.moment(sample)).collect();
+            moments.sort_by(f64::total_cmp);
+            assert!(moments.iter().all(|moment| moment.abs() <= 0.2));
+            let widest = moments.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+            assert!(widest < 2.0 * 0.4 / f64::from(count), "{count}: {widest}");
+        }
     }
 }

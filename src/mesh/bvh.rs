@@ -3,7 +3,7 @@
 //! Built with the binned surface area heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies",
 //! 2007). Boxes are f64, since triangles may stand too far away for f32 to tell them apart.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use isolith_geometry::{Aabb, Ray};
 
@@ -105,6 +105,62 @@ impl Bvh {
             }
         }
         best
+    }
+}
+
+impl Bvh {
+    /// Distance from `p` to the nearest triangle that `is_there` accepts, measured after `place`; `within` if there is
+    /// none so near.
+    pub fn distance(
+        &self,
+        p: DVec3,
+        place: &DMat3,
+        within: f64,
+        corners: impl Fn(u32) -> Triangle,
+        is_there: impl Fn(u32) -> bool,
+    ) -> f64 {
+        // The least length of a vector of length 1 after `place` (Gershgorin's circles of the squared inverse).
+        let squared = place.inverse() * place.inverse().transpose();
+        let sum = |i: usize| squared.row(i).abs().element_sum();
+        let least = (1.0 - 1e-9) / sum(0).max(sum(1)).max(sum(2)).sqrt();
+        let away = |index: usize| self.nodes[index].bounds.distance(p).max(0.0) * least;
+        let mut best = within;
+        let mut open = Vec::with_capacity(64);
+        if !self.nodes.is_empty() {
+            open.push(0_usize);
+        }
+        while let Some(index) = open.pop() {
+            let node = &self.nodes[index];
+            if away(index) >= best {
+                continue;
+            }
+            if node.count == 0 {
+                let (left, right) = (index + 1, node.first as usize);
+                open.extend(if away(left) <= away(right) { [right, left] } else { [left, right] });
+                continue;
+            }
+            let own = &self.triangles[node.first as usize..][..node.count as usize];
+            for &triangle in own.iter().filter(|triangle| is_there(**triangle)) {
+                best = best.min(distance_to_triangle(&corners(triangle).map(|corner| *place * (corner - p))));
+            }
+        }
+        best
+    }
+}
+
+/// Distance of the origin from a triangle: to its plane if the origin is above the triangle, else to the nearest edge.
+fn distance_to_triangle([a, b, c]: &Triangle) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let edge = |from: DVec3, to: DVec3| {
+        let along = to - from;
+        let share = (-from.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (from + along * share).length()
+    };
+    let is_within = |from: DVec3, to: DVec3| normal.cross(to - from).dot(from) <= 0.0;
+    let is_above = is_within(*a, *b) && is_within(*b, *c) && is_within(*c, *a);
+    match normal.try_normalize() {
+        Some(normal) if is_above => a.dot(normal).abs(),
+        _ => edge(*a, *b).min(edge(*b, *c)).min(edge(*c, *a)),
     }
 }
 

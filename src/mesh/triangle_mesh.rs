@@ -305,6 +305,13 @@ impl TriangleMesh {
         Some(MeshHit { t, triangle, weights, normal: self.normal_at(triangle, weights) })
     }
 
+    /// Distance in meters from a point to the nearest triangle that stops light; `within` if there is none so near.
+    pub fn distance_to_solid(&self, p_local: DVec3, world_from_local: &DMat3, within: f64) -> f64 {
+        let corners = |triangle| self.corners(triangle);
+        let is_solid = |triangle| !self.part(triangle).surface.is_blended;
+        self.bvh().distance(p_local, world_from_local, within, corners, is_solid)
+    }
+
     fn is_there(&self, triangle: u32, weights: [f64; 3], covers: &impl Fn(u32, f64) -> bool) -> bool {
         let opacity = || self.color(triangle, weights, |[.., a]| DVec4::splat(f64::from(a) / 255.0)).w;
         match self.part(triangle).surface {

@@ -47,7 +47,8 @@ pub use pipelines::cache::PipelineCache;
 pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;
 pub use renderer::{
-    Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, StillWatch, TraceCounts,
+    Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, SampleMoment, Slot, StillWatch,
+    TraceCounts,
 };
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
 pub use resources::mesh_rays::{MAX_MESH_VISITS, MeshRayBuffer, RayMesh};

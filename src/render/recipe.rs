@@ -17,6 +17,8 @@ macro_rules! recipe {
             Trace: trace = TracePass, "trace.wgsl", over Rounds;
             /// Normals and materials of the pixels that remain visible after all components are traced.
             Surface: surface = SurfacePass, "surface.wgsl", over Hits;
+            /// Which lights may reach the surfaces of each tile.
+            Lights: lights = LightsPass, "lights.wgsl", over Lit;
             /// Soft shadows and occlusion, by cones against the whole scene.
             Shadow: shadow = ShadowPass, "shadow.wgsl", over Shaded;
             /// Lighting and background.
@@ -45,6 +47,8 @@ pub enum Extent {
     Rounds,
     /// The parts again, after all components have been traced.
     Hits,
+    /// The picture, in one dispatch, if the scene has many lights.
+    Lit,
     /// The picture, in parts, each in two dispatches, if the scene has shadows or occlusion. The second one is
     /// repeated until no cone is left.
     Shaded,
@@ -73,6 +77,11 @@ macro_rules! passes {
         impl Pass {
             /// All passes, in the order of the frame.
             pub const ALL: &[Self] = &[$(Self::$pass),*];
+
+            /// Whether it computes light from hits that other passes have found.
+            pub fn is_of_light(self) -> bool {
+                matches!(self.extent(), Extent::Lit | Extent::Shaded | Extent::Light)
+            }
 
             /// Its label on the device and in the timings: the name of its shader.
             pub fn label(self) -> &'static str {

@@ -25,7 +25,8 @@ use std::time::{Duration, Instant};
 use super::passes::{Passes, frame_pass::Building, overlay_settings::OverlaySettings};
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
-use crate::frame::plan::{FramePlan, PixelLight, PlannedView, Room, TooMuch, TracedParts, plan};
+use crate::frame::light_tiles::{PixelLight, bytes_of_light_tiles};
+use crate::frame::plan::{FramePlan, PlannedView, Room, TooMuch, TracedParts, plan};
 use crate::gpu::Gpu;
 use crate::gpu::readback::{read_buffers, read_color, read_words_at};
 use crate::passes::shade_features::ShadeFeatures;
@@ -50,7 +51,7 @@ use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
 use shadows::{SeenScene, ShadowWork};
 pub use slot::Slot;
-pub use still::{Film, StillWatch};
+pub use still::{Film, SampleMoment, StillWatch};
 pub use timings::PassTime;
 use timings::PassTimings;
 
@@ -219,7 +220,9 @@ impl Renderer {
         let lights = gpu_lights(flat, &view.camera, size);
         let casters = lights.iter().filter(|light| light.cast_shadows == 1).count();
         let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
-        let light = PixelLight { lights: lights.len(), shadows: shadows.map_or(0.0, |shadows| shadows.per_pixel()) };
+        let tiled = bytes_of_light_tiles(lights.len(), size, limit).is_some();
+        let of_shadows = shadows.map_or(0.0, |shadows| shadows.per_pixel());
+        let light = PixelLight { lights: lights.len(), tiled, shadows: of_shadows };
         let shown = PlannedView { view, size, traced: self.traced };
         let plan = plan(flat, shown, &chosen.evaluations, light, &self.cost_model, room).map_err(refused)?;
         check(&self.cancel)?;
@@ -283,7 +286,8 @@ impl Renderer {
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
         let shadowed = self.resources.shadows.used.is_on();
-        let features = ShadeFeatures::new(flat, &lights, &materials.all, shadowed);
+        let tiled = self.resources.light_tiles().is_some();
+        let features = ShadeFeatures { tiled, ..ShadeFeatures::new(flat, &lights, &materials.all, shadowed) };
         self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);

@@ -226,6 +226,8 @@ pub const CUT_OFF: Limits = Limits::new([0.0, 1e3], [0.0, 1e9], "m");
 pub const PRECISION: Limits = Limits::new([0.1, 1.0], [0.01, 10.0], "");
 /// Most steps of a ray through a part of the scene; 0 for no limit.
 pub const MARCH_STEPS: Limits = Limits::new([0.0, 256.0], [0.0, 65_536.0], "").whole();
+/// How long a shutter is open.
+pub const SHUTTER: Limits = Limits::new([0.0, 0.2], [0.0, 60.0], "s");
 /// Near and far limits of a camera.
 pub const CLIP: Limits = Limits::new([1e-3, 1e4], [1e-6, 1e9], "m");
 /// Distance from one copy to the next, and lengths of waves.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::limits::{
     APERTURE, BAKED_VOXELS, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION,
-    SCALE, THICKNESS, UNIT, WEIGHT,
+    SCALE, SHUTTER, THICKNESS, UNIT, WEIGHT,
 };
 use super::node_id::NodeId;
 use super::params::{param_struct, param_table};
@@ -336,6 +336,10 @@ param_struct! {
         /// Distance of what is sharp, along the view axis.
         #[serde(default = "usual_focus", skip_serializing_if = "is_usual_focus")]
         focus_distance: f64 = usual_focus(), CLIP.labeled("Focus distance");
+        /// How long the shutter is open, around the moment of the picture: motion blur in stills of several samples. 0
+        /// stops all motion.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        shutter: f64 = 0.0, SHUTTER;
     }
 }
 

@@ -128,8 +128,8 @@ fn look_of(point: &isolith_field::eval::SurfacePoint) -> VoxelLook {
     let light = material.emission.max_element();
     let color = if light > material.base_color.max_element() { material.emission / light } else { material.base_color };
     let emission = if light > 0.0 { light / color.max_element() } else { 0.0 };
-    let normal = point.gradient.normalize_or(DVec3::Y);
-    VoxelLook { color, metalness: material.metalness, roughness: material.roughness, emission, normal }
+    let bend = DVec3::ZERO;
+    VoxelLook { color, metalness: material.metalness, roughness: material.roughness, emission, bend }
 }
 
 /// What a group's content was made of.

@@ -51,6 +51,37 @@ fn check(mesh: &TriangleMesh, count: usize, seed: u64) -> usize {
     hits
 }
 
+/// Distance from the triangle by the greatest of many ways to look at it: any direction from the nearest point on.
+fn distance_by_grid([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    const STEPS: u32 = 24;
+    let at =
+        |i: u32, j: u32| a + (b - a) * (f64::from(i) / f64::from(STEPS)) + (c - a) * (f64::from(j) / f64::from(STEPS));
+    let points = (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| at(i, j)));
+    points.map(|q| q.distance(p)).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn distances_are_those_of_the_nearest_triangle_also_if_the_mesh_is_stretched() {
+    let mesh = load(&scenes().join("models/suzanne.glb")).unwrap();
+    let mut random = Random(7);
+    for place in [DMat3::IDENTITY, DMat3::from_diagonal(DVec3::new(0.4, 3.0, 1.0)) * DMat3::from_rotation_z(0.7)] {
+        for _ in 0..30 {
+            let p = mesh.bounds.center() + mesh.bounds.half() * DVec3::from([0; 3].map(|_| random.between(-2.0, 2.0)));
+            let distance = mesh.distance_to_solid(p, &place, f64::INFINITY);
+            let corners = |t: u32| mesh.corners(t).map(|corner| place * (corner - p));
+            let all = 0..mesh.triangle_count() as u32;
+            let (by_grid, size) = all.map(|t| (distance_by_grid(corners(t), DVec3::ZERO), corners(t))).fold(
+                (f64::INFINITY, 0.0),
+                |best, (d, [a, b, c])| {
+                    if d < best.0 { (d, (b - a).length().max((c - a).length())) } else { best }
+                },
+            );
+            assert!(distance <= by_grid + 1e-9 && distance >= by_grid - 0.06 * size, "{distance}, {by_grid}, {size}");
+            assert_eq!(mesh.distance_to_solid(p, &place, 0.5 * distance), 0.5 * distance, "none is nearer");
+        }
+    }
+}
+
 #[test]
 fn two_thousand_rays_find_what_a_search_of_all_triangles_finds() {
     let mesh = load(&scenes().join("models/suzanne.glb")).unwrap();

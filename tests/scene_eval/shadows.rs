@@ -176,9 +176,9 @@ fn occlusion_by_six_cones_is_near_that_by_many_rays() {
         for at in seen {
             let origin = surface_ray(at.point, at.normal, at.normal, at.footprint).origin;
             let before = evaluator.counts.evaluations;
-            let found = scene_occlusion(&mut evaluator, origin, at.normal, 1.0, 2.0 * at.footprint);
+            let found = scene_occlusion(&mut evaluator, &[], origin, at.normal, [1.0, 2.0 * at.footprint]);
             evaluations += evaluator.counts.evaluations - before;
-            let truth = occlusion_by_rays(&mut evaluator, origin, at.normal, 1.0, RAYS).unwrap();
+            let truth = occlusion_by_rays(&mut evaluator, &[], origin, at.normal, 1.0, RAYS).unwrap();
             error += (found.visibility - truth.visibility).abs();
             signed += found.visibility - truth.visibility;
             turned += found.bent.angle_between(truth.bent).to_degrees() * f64::from(u8::from(truth.visibility > 0.1));

@@ -3,14 +3,16 @@
 
 use glam::DVec3;
 
-use super::occlusion::{Occlusion, scene_occlusion};
+use super::occlusion::{AmbientRay, Occlusion, occlusion_shares};
 use super::shadow::{
     ShadowCone, ShadowProof, cone_fineness, light_extent, light_is_seen, light_sample, light_toward, shadow_share,
+    unit_sample,
 };
 use crate::lights::GpuLight;
 use crate::mesh_rays::{Meshes, mesh_rays_blocked};
 use crate::reference::trace::TraceError;
-use crate::scene_eval::{SceneEvaluator, surface_ray};
+use crate::scene_eval::{RayLimits, SceneEvaluator, surface_ray};
+use isolith_geometry::Ray;
 
 /// Least distance of an evaluation for occlusion, in footprints.
 const OCCLUSION_FOOTPRINTS: f64 = 2.0;
@@ -67,14 +69,26 @@ impl Arriving {
                 arriving.shares.push(light_share(evaluator, meshes, (light, index), point, fineness)?);
             }
         }
+        let shadowed = arriving.shares.len() as u32;
         if shadowing.occlusion {
             let origin = start(point, point.normal);
             let least = OCCLUSION_FOOTPRINTS * point.footprint;
-            let Occlusion { bent, visibility } =
-                scene_occlusion(evaluator, origin, point.normal, shadowing.occlusion_radius, least);
+            let radius = shadowing.occlusion_radius;
+            let shares = occlusion_shares(evaluator, meshes, origin, point.normal, [radius, least]);
+            let Occlusion { bent, visibility } = Occlusion::of_shares(point.normal, &shares);
             arriving.bent =
                 point.normal.lerp(bent * visibility, shadowing.occlusion_strength).normalize_or(point.normal);
-            arriving.visibility = 1.0 + (visibility - 1.0) * shadowing.occlusion_strength;
+            let mut visible = visibility;
+            if point.sample > 0 {
+                let unit = unit_sample(point.pixel, shadowed, point.sample);
+                let AmbientRay { direction, shares } = AmbientRay::new(point.normal, &shares, unit);
+                let ray = Ray { origin: start(point, direction), direction };
+                let limits = RayLimits { near: 0.0, far: radius };
+                let is_free = evaluator.ray(&ray, limits)?.is_none()
+                    && !mesh_rays_blocked(evaluator.flat(), meshes, &ray, 0.0, radius);
+                visible = shares[usize::from(is_free)];
+            }
+            arriving.visibility = 1.0 + (visible - 1.0) * shadowing.occlusion_strength;
         }
         Ok(arriving)
     }

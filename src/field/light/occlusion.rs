@@ -11,9 +11,10 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::shadow::cone_share;
+use super::shadow::{cone_share, disc_spiral};
 use crate::copies::{copy_ray, visit_copies};
 use crate::eval::field;
+use crate::mesh_rays::{Meshes, mesh_rays_blocked, mesh_rays_distance, mesh_rays_hit};
 use crate::reference::trace::TraceError;
 use crate::scene_eval::{RayLimits, SceneCounts, SceneEvaluator};
 use crate::{Component, FlatScene};
@@ -44,6 +45,17 @@ pub struct Occlusion {
 }
 
 impl Occlusion {
+    /// That of these visible shares of the cones.
+    pub fn of_shares(normal: DVec3, shares: &[f64]) -> Self {
+        let (mut bent, mut visibility) = (DVec3::ZERO, 0.0);
+        for (index, share) in (0..).zip(shares) {
+            let (direction, weight) = occlusion_cone(normal, index);
+            visibility += weight * share;
+            bent += direction * (weight * share);
+        }
+        Self { bent: bent.normalize_or(normal), visibility }
+    }
+
     /// A point that sees all.
     pub fn none(normal: DVec3) -> Self {
         Self { bent: normal, visibility: 1.0 }
@@ -62,24 +74,88 @@ pub fn occlusion_cone(normal: DVec3, index: u32) -> (DVec3, f64) {
     (normal * 0.5 + around * 0.75_f64.sqrt(), (1.0 - MIDDLE_WEIGHT) / others)
 }
 
+/// The direction around a unit normal of a ray to a point of the unit disc below: as likely as the cosine.
+pub fn occlusion_ray(normal: DVec3, [x, y]: [f64; 2]) -> DVec3 {
+    let (right, up) = normal.any_orthonormal_pair();
+    (right * x + up * y + normal * (1.0 - x * x - y * y).max(1e-6).sqrt()).normalize()
+}
+
 /// The occlusion of a point above a surface by everything within `radius`. `least` is the least distance of an
 /// evaluation.
 pub fn scene_occlusion(
     evaluator: &mut SceneEvaluator<'_>,
+    meshes: &Meshes,
     origin: DVec3,
     normal: DVec3,
-    radius: f64,
-    least: f64,
+    [radius, least]: [f64; 2],
 ) -> Occlusion {
+    Occlusion::of_shares(normal, &occlusion_shares(evaluator, meshes, origin, normal, [radius, least]))
+}
+
+/// The visible share of each cone.
+pub fn occlusion_shares(
+    evaluator: &mut SceneEvaluator<'_>,
+    meshes: &Meshes,
+    origin: DVec3,
+    normal: DVec3,
+    [radius, least]: [f64; 2],
+) -> [f64; OCCLUSION_CONES as usize] {
     let limits = RayLimits { near: (OCCLUSION_NEAR * radius).max(least), far: OCCLUSION_FAR * radius };
-    let (mut bent, mut visibility) = (DVec3::ZERO, 0.0);
-    for index in 0..OCCLUSION_CONES {
-        let (direction, weight) = occlusion_cone(normal, index);
-        let free = weight * cone_share(least_ratio(evaluator, &Ray { origin, direction }, limits, normal));
-        visibility += free;
-        bent += direction * free;
+    std::array::from_fn(|index| {
+        let axis = Ray { origin, direction: occlusion_cone(normal, index as u32).0 };
+        let of_fields = least_ratio(evaluator, &axis, limits, normal);
+        cone_share(of_fields.min(least_mesh_ratio(evaluator.flat(), meshes, &axis, limits)))
+    })
+}
+
+/// How much a ray in the part of a cone is expected to tell: the deviation of what it finds, if this share is visible.
+/// Never 0, for cones err.
+fn occlusion_doubt(share: f64) -> f64 {
+    (share * (1.0 - share)).sqrt().max(0.1)
+}
+
+/// A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit square. The
+/// parts are as likely as the weights of the cones.
+fn occlusion_place(cone: usize, [x, y]: [f64; 2]) -> [f64; 2] {
+    let others = f64::from(OCCLUSION_CONES - 1);
+    let (square, turn) = match cone {
+        0 => (MIDDLE_WEIGHT * x, y),
+        _ => (MIDDLE_WEIGHT + (1.0 - MIDDLE_WEIGHT) * x, (cone as f64 - 1.5 + y) / others),
+    };
+    let (radius, (sin, cos)) = (square.sqrt(), (TAU * turn).sin_cos());
+    [radius * cos, radius * sin]
+}
+
+/// The ray of a sample to the environment, and what it tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientRay {
+    /// Its direction.
+    pub direction: DVec3,
+    /// The visible share of the hemisphere if the ray meets something, and if it meets nothing: the mean over all samples
+    /// is that of the rays.
+    pub shares: [f64; 2],
+}
+
+impl AmbientRay {
+    /// The ray for a point of the unit square, around a unit normal, if the cones have these shares. It goes to the part
+    /// of a cone as often as that weighs and is in doubt.
+    pub fn new(normal: DVec3, of_cones: &[f64; OCCLUSION_CONES as usize], [x, y]: [f64; 2]) -> Self {
+        let parts: Vec<f64> = (0..)
+            .zip(of_cones)
+            .map(|(index, share)| occlusion_cone(normal, index).1 * occlusion_doubt(*share))
+            .collect();
+        let all: f64 = parts.iter().sum();
+        let (mut left, mut cone) = (x * all, 0);
+        while left >= parts[cone] && cone + 1 < parts.len() {
+            left -= parts[cone];
+            cone += 1;
+        }
+        let place = occlusion_place(cone, [(left / parts[cone]).clamp(0.0, 1.0), y]);
+        let visible = Occlusion::of_shares(normal, of_cones).visibility;
+        let factor = all / occlusion_doubt(of_cones[cone]);
+        let shares = [0.0, 1.0].map(|found| visible + (found - of_cones[cone]) * factor);
+        Self { direction: occlusion_ray(normal, place), shares }
     }
-    Occlusion { bent: bent.normalize_or(normal), visibility }
 }
 
 /// The least ratio of the field of any component, along the axis of a cone, and the radius of a sphere in it.
@@ -102,6 +178,24 @@ fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits
             continue;
         }
         ratio = ratio.min(ratio_of(flat, component, axis, limits, OCCLUSION_SINE, &mut evaluator.counts));
+    }
+    ratio
+}
+
+/// The least ratio of the distance from meshes and the radius of a sphere. Behind the first triangle on the axis the
+/// distance counts as that within a solid.
+fn least_mesh_ratio(flat: &FlatScene, meshes: &Meshes, axis: &Ray, limits: RayLimits) -> f64 {
+    let mut ratio = 1.0_f64;
+    if meshes.iter().all(Option::is_none) {
+        return ratio;
+    }
+    let stop = mesh_rays_hit(flat, meshes, axis, 0.0, limits.far).map_or(f64::INFINITY, |(_, hit)| hit.t);
+    let mut t = limits.near;
+    while t <= limits.far {
+        let size = OCCLUSION_SINE * t;
+        let away = mesh_rays_distance(flat, meshes, axis.at(t), size) / size;
+        ratio = ratio.min(if t > stop { -away } else { away });
+        t *= OCCLUSION_GROWTH;
     }
     ratio
 }
@@ -139,19 +233,17 @@ fn ratio_of(
 /// A ray could not be followed to its end.
 pub fn occlusion_by_rays(
     evaluator: &mut SceneEvaluator<'_>,
+    meshes: &Meshes,
     origin: DVec3,
     normal: DVec3,
     radius: f64,
     count: u32,
 ) -> Result<Occlusion, TraceError> {
-    let (right, up) = normal.any_orthonormal_pair();
     let (mut bent, mut seen) = (DVec3::ZERO, 0);
     for i in 0..count {
-        let share = (f64::from(i) + 0.5) / f64::from(count);
-        let (sin, cos) = (TAU * 0.618_033_988_75 * f64::from(i)).sin_cos();
-        let direction = (right * cos + up * sin) * share.sqrt() + normal * (1.0 - share).sqrt();
-        let limits = RayLimits { near: 0.0, far: radius };
-        if evaluator.ray(&Ray { origin, direction }, limits)?.is_none() {
+        let direction = occlusion_ray(normal, disc_spiral(i, count));
+        let (ray, limits) = (Ray { origin, direction }, RayLimits { near: 0.0, far: radius });
+        if evaluator.ray(&ray, limits)?.is_none() && !mesh_rays_blocked(evaluator.flat(), meshes, &ray, 0.0, radius) {
             seen += 1;
             bent += direction;
         }
@@ -174,5 +266,26 @@ mod tests {
         }
         let middle = cones.iter().map(|cone| cone.0 * cone.1).sum::<DVec3>();
         assert!(middle.normalize().dot(normal) > 1.0 - 1e-12);
+    }
+
+    /// The parts of cones cover the hemisphere: the mean of what rays tell is that of many rays, whatever the cones say.
+    #[test]
+    fn rays_tell_the_truth_whatever_cones_say() {
+        let (normal, count) = (DVec3::new(0.6, 0.0, 0.8), 40_000);
+        let is_free = |direction: DVec3| direction.dot(DVec3::new(0.3, 0.9, 0.1)) < 0.2;
+        let unit = |i: u32| [(f64::from(i) + 0.5) / f64::from(count), (0.618_033_988_75 * f64::from(i)).fract()];
+        let truth = (0..count).filter(|i| is_free(occlusion_ray(normal, disc_spiral(*i, count)))).count();
+        let truth = truth as f64 / f64::from(count);
+        let mut deviations = Vec::new();
+        for shares in [[0.5; 6], [1.0, 0.2, 0.0, 0.0, 0.9, 1.0], [1.0, 0.0, 0.4, 1.0, 1.0, 0.5]] {
+            let told: Vec<f64> = (0..count)
+                .map(|i| AmbientRay::new(normal, &shares, unit(i)))
+                .map(|ray| ray.shares[usize::from(is_free(ray.direction))])
+                .collect();
+            let mean = told.iter().sum::<f64>() / f64::from(count);
+            assert!((mean - truth).abs() < 4e-3, "{shares:?}: {mean} {truth}");
+            deviations.push((told.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / f64::from(count)).sqrt());
+        }
+        assert!(deviations.iter().all(|deviation| *deviation < 1.0), "{deviations:?}");
     }
 }

@@ -321,13 +321,18 @@ pub fn light_toward(light: &GpuLight, position: DVec3) -> Option<(DVec3, f64)> {
 /// A point of a light's disc of radius 1 for a ray of a still picture: the sequence R2 (Roberts, "The Unreasonable
 /// Effectiveness of Quasirandom Sequences", 2018), shifted for each pixel and light. Counterpart of
 /// `shaders/light/sample.wgsl`.
-pub fn light_sample([x, y]: [u32; 2], light: u32, sample: u32) -> [f64; 2] {
+pub fn light_sample(pixel: [u32; 2], light: u32, sample: u32) -> [f64; 2] {
+    let [x, y] = unit_sample(pixel, light, sample);
+    let (radius, (sin, cos)) = (x.sqrt(), (TAU * y).sin_cos());
+    [radius * cos, radius * sin]
+}
+
+/// The same in the unit square.
+pub fn unit_sample([x, y]: [u32; 2], light: u32, sample: u32) -> [f64; 2] {
     let hash = sample_hash([x, y, light]);
     let place =
         |hash: u32, step: u32| f64::from(hash.wrapping_add(step.wrapping_mul(sample)) >> 8) / f64::from(1 << 24);
-    let radius = place(hash[0], 0xc13f_a9a9).sqrt();
-    let (sin, cos) = (TAU * place(hash[1], 0x91e1_0da5)).sin_cos();
-    [radius * cos, radius * sin]
+    [place(hash[0], 0xc13f_a9a9), place(hash[1], 0x91e1_0da5)]
 }
 
 /// Hash of three words (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020).
@@ -370,7 +375,7 @@ pub fn light_is_seen(
 }
 
 /// Point `i` of `count` that cover the unit disc evenly (Vogel, "A better way to construct the sunflower head", 1979).
-fn disc_spiral(i: u32, count: u32) -> [f64; 2] {
+pub fn disc_spiral(i: u32, count: u32) -> [f64; 2] {
     let radius = ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
     let (sin, cos) = (TAU * 0.618_033_988_75 * f64::from(i)).sin_cos();
     [radius * cos, radius * sin]

@@ -5,7 +5,7 @@ use crate::flatten;
 use crate::light::brdf::ShadingPoint;
 use crate::light::lighting::{lighting_attenuation, lighting_reflected};
 use crate::mixture::SurfaceMaterial;
-use isolith_scene::{Light, Node, NodeKind, Scene};
+use isolith_scene::{Light, MaterialId, Node, NodeKind, Object, Scene, Shape};
 
 /// A scene with a point light at each place.
 fn lit(places: &[DVec3], power: f64) -> FlatScene {
@@ -28,6 +28,35 @@ fn a_light_ends_where_it_is_too_weak_to_see_and_differs_little_before() {
         let distance = 2.0 * range * f64::from(i) / 1_000.0;
         let off = at_one * (1.0 / (distance * distance) - lighting_attenuation(&light, distance));
         assert!(off >= -1e-6 * at_one && off <= 1.1 * LEAST_LIGHT, "{distance}: {off}");
+    }
+}
+
+/// A light in view that reaches no bounds of anything in view is left out.
+#[test]
+fn a_light_that_meets_nothing_in_view_is_left_out() {
+    let mut bare = Scene::new();
+    let place = |x: f64, y: f64| DVec3::new(x, y, -6.0);
+    let power = 4.0 * PI * PI * LEAST_LIGHT;
+    // Their range is 1 m.
+    for at in [place(0.0, 1.5), place(0.0, 2.5), place(-2.0, 0.0), place(3.5, 0.0)] {
+        let kind = LightKind::Point { power, radius: 0.0, falloff: Falloff::InverseSquare {} };
+        bare.insert(None, usize::MAX, Node::new("Lamp", NodeKind::Light(Light::new(kind))).at(at)).expect("room");
+    }
+    for at in [place(0.0, 0.0), place(5.0, 0.0)] {
+        let ball = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };
+        bare.insert(None, usize::MAX, Node::new("Ball", NodeKind::Object(ball)).at(at)).expect("room");
+    }
+    let camera = Camera { near: 0.1, far: 100.0, ..Camera::looking_at(DVec3::ZERO, DVec3::NEG_Z, 0.9) };
+    let left = |scene: &Scene| gpu_lights(&flatten(scene, 0.0).expect("within the limits"), &camera, [100, 100]).len();
+    // The second is too high, and the last one lights a ball that is out of view.
+    assert_eq!(left(&bare), 2);
+    // A floor that the second lamp reaches, and one that it does not; the others are in it or near.
+    for (height, count) in [(2.0, 4), (1.0, 3)] {
+        let mut scene = bare.clone();
+        let floor = Object { shape: Shape::Plane {}, material: MaterialId(1) };
+        let floor = Node::new("Floor", NodeKind::Object(floor)).at(DVec3::Y * height);
+        scene.insert(None, usize::MAX, floor).expect("room");
+        assert_eq!(left(&scene), count, "{height}");
     }
 }
 

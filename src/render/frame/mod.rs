@@ -2,5 +2,6 @@
 
 pub mod copies_cost;
 pub mod cost_model;
+pub mod light_tiles;
 pub mod plan;
 pub mod rect;

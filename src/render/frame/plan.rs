@@ -10,6 +10,7 @@ use glam::UVec2;
 
 use crate::frame::copies_cost::{COPIES_OF_A_RAY, CopyLimits, LEAST_RELAUNCHES, walk_leaves};
 use crate::frame::cost_model::{Cost, CostModel};
+use crate::frame::light_tiles::PixelLight;
 use crate::frame::rect::{Rect, ScreenProjection, TILE};
 use crate::recipe::{Extent, Pass};
 use crate::renderer::evaluation::EvaluationCost;
@@ -110,15 +111,6 @@ pub enum TooMuch {
     },
 }
 
-/// The work for the light of a pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PixelLight {
-    /// Number of lights.
-    pub lights: usize,
-    /// Expected number of leaves evaluated for shadows and occlusion; 0 without them.
-    pub shadows: f64,
-}
-
 /// What a frame shows of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct PlannedView<'a> {
@@ -170,12 +162,13 @@ pub fn plan(
         })
         .collect();
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
-    let PixelLight { lights, shadows } = light;
-    let shading = 0.3 + 0.2 * lights as f64;
+    let PixelLight { tiled, shadows, .. } = light;
+    let shading = light.of_shading();
     let most_shading = cost_model.cost_in(DISPATCH_TARGET, false);
     let most_shadows = most_shading.min(shadows * MOST_SHADOW_PIXELS);
     let shadow_parts = if shadows > 0.0 { 2 * whole.parts(shadows, most_shadows) } else { 0 };
-    let others = 1 + usize::from(!flat.meshes.is_empty()) + whole.parts(shading, most_shading) + shadow_parts;
+    let single = 1 + [!flat.meshes.is_empty(), tiled].map(usize::from).iter().sum::<usize>();
+    let others = single + whole.parts(shading, most_shading) + shadow_parts;
     if seen.iter().map(dispatches).fold(others, usize::saturating_add) > room.dispatches {
         let component = seen.iter().max_by_key(|one| dispatches(one)).map_or(0, |one| one.0);
         return Err(TooMuch::Pieces { component });
@@ -198,6 +191,8 @@ pub fn plan(
             Extent::Parts | Extent::Rounds | Extent::Hits => {
                 parts.iter().for_each(|part| stages.iter().for_each(|pass| plan.part(*pass, part)));
             }
+            Extent::Lit if !tiled => {}
+            Extent::Lit => plan.push(stages[0], whole.params(0), Cost::new(false, whole.pixels() * light.of_tiles())),
             Extent::Shaded if shadows == 0.0 => {}
             Extent::Shaded => whole.cut(shadows, most_shadows, |rect| {
                 for relaunch in [0, 1] {
@@ -307,7 +302,7 @@ impl FramePlan {
             }));
         }
         let surfaces = self.dispatches.iter().filter(|dispatch| dispatch.pass == Pass::Surface).filter(is_meant);
-        let shading = self.dispatches.iter().filter(|dispatch| matches!(dispatch.pass, Pass::Shadow | Pass::Shade));
+        let shading = self.dispatches.iter().filter(|dispatch| dispatch.pass.is_of_light());
         dispatches.extend(surfaces.chain(shading).copied());
         dispatches
     }

@@ -102,6 +102,7 @@ impl FramePass for ShadePass {
                 .shade_features
                 .carried
                 .then(|| recorder.shaded().copies.each_ref().map(wgpu::Buffer::as_entire_binding)),
+            tiles: recorder.resources.light_tiles(),
         };
         let (output, target) = match sampled {
             Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),

@@ -34,6 +34,8 @@ pub struct ShadeFeatures {
     pub shadowed: bool,
     /// There are copies of instancers.
     pub copies: bool,
+    /// There are many lights, and tiles know those that may reach them.
+    pub tiled: bool,
 }
 
 impl ShadeFeatures {
@@ -49,6 +51,7 @@ impl ShadeFeatures {
             image_lit: flat.environment_map.is_some(),
             shadowed,
             copies: !flat.instancers.is_empty(),
+            tiled: false,
         }
     }
 
@@ -57,9 +60,15 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let Self { layers, textures, looks, carried, area_lights, image_lit, shadowed, copies } = self;
+        let Self { layers, textures, looks, carried, area_lights, image_lit, shadowed, copies, tiled } = self;
         let options = Options { layers, area_lights, image_lit, shadowed, ..Options::default() };
-        let used = [(textures, "TEXTURES"), (looks, "LOOKS"), (carried, SCENE_COPIES), (copies, "COPIES")];
+        let used = [
+            (textures, "TEXTURES"),
+            (looks, "LOOKS"),
+            (carried, SCENE_COPIES),
+            (copies, "COPIES"),
+            (tiled, "LIGHT_TILES"),
+        ];
         let features: Vec<&str> = used.into_iter().filter_map(|(is_used, name)| is_used.then_some(name)).collect();
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, &features)
     }
@@ -101,6 +110,7 @@ const CARRIED: [u32; 2] = [4, 5];
 const COPIED: u32 = 6;
 const BRICKS: u32 = 7;
 const SHARES: [u32; 2] = [8, 9];
+const TILES: u32 = 10;
 
 /// The resources of group 3.
 #[derive(Clone, Debug, Default)]
@@ -117,6 +127,8 @@ pub struct ShadeExtras<'a> {
     pub bricks: Option<BindingResource<'a>>,
     /// The instancers and their places, if copies carry textures.
     pub carried: Option<[BindingResource<'a>; 2]>,
+    /// The lights of each tile, if there are many.
+    pub tiles: Option<BindingResource<'a>>,
 }
 
 impl ShadeFeatures {
@@ -129,7 +141,8 @@ impl ShadeFeatures {
         let copied = self.copies.then(|| (COPIED, read_storage()));
         let bricks = self.looks.then(|| (BRICKS, read_only_texture(BRICKS_FORMAT)));
         let carried = CARRIED.map(|at| (at, read_storage())).into_iter().filter(|_| self.carried);
-        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(bricks).chain(carried);
+        let tiles = self.tiled.then(|| (TILES, read_storage()));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(bricks).chain(carried).chain(tiles);
         let entries: Vec<_> = all.map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
         layout(device, "shade extras", &entries)
     }
@@ -145,7 +158,8 @@ impl ShadeExtras<'_> {
         let copied = self.copied.map(|copied| (COPIED, copied));
         let bricks = self.bricks.map(|bricks| (BRICKS, bricks));
         let carried = self.carried.into_iter().flat_map(|resources| CARRIED.into_iter().zip(resources));
-        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(bricks).chain(carried);
+        let tiles = self.tiles.map(|tiles| (TILES, tiles));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied).chain(bricks).chain(carried).chain(tiles);
         let entries: Vec<_> = all.map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
         device.create_bind_group(&BindGroupDescriptor { label: Some("shade extras"), layout, entries: &entries })
     }

@@ -65,7 +65,7 @@ pub struct ShadowPass {
 
 impl ShadowPass {
     /// Chooses the pipelines for a scene, and builds what is missing. `by_tapes`: whether all components have
-    /// tapes; `obstacles`: what casts shadows besides them; `used`: whether there are shadows, and occlusion.
+    /// tapes; `obstacles`: what casts shadows besides them; `used`: which entry points are.
     ///
     /// # Errors
     /// A shader file is missing.
@@ -152,7 +152,8 @@ impl FramePass for ShadowPass {
         for at in dispatches {
             let [x, y] = recorder.frame.plan.dispatches[at].tiles();
             const { assert!(TILE == 8, "the size of a workgroup") };
-            for (pipeline, _) in pipelines.iter().zip(used).filter(|(_, used)| *used) {
+            // Occlusion first: rays to the environment look where its cones are in doubt.
+            for (pipeline, _) in pipelines.iter().zip(used).rev().filter(|(_, used)| *used) {
                 let (Some(pipeline), pass) = (pipeline, recorder.open()) else { continue };
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(1, scene, &[0, 0]);

@@ -168,14 +168,14 @@ impl Frame {
     /// Skips all passes but shadows, lighting and overlay, for a picture of the same scene from the same place that is already
     /// complete in its slot.
     pub fn skip_to_shading(&mut self) {
-        let shading = self.plan.dispatches.iter().position(|p| matches!(p.pass, Pass::Shadow | Pass::Shade));
+        let shading = self.plan.dispatches.iter().position(|dispatch| dispatch.pass.is_of_light());
         self.next = shading.unwrap_or(self.plan.dispatches.len());
         self.measured = None;
     }
 
     /// Skips lighting and overlay, if only depth, normals and materials are needed.
     pub fn skip_shading(&mut self) {
-        self.plan.dispatches.retain(|dispatch| !matches!(dispatch.pass, Pass::Shadow | Pass::Shade));
+        self.plan.dispatches.retain(|dispatch| !dispatch.pass.is_of_light());
         self.overlay = OverlaySettings::default();
     }
 

@@ -11,6 +11,7 @@ use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::scene::ShadedScene;
 use super::slot::Slot;
+use crate::frame::light_tiles::bytes_of_light_tiles;
 use crate::frame::plan::{Dispatch, FramePlan, Room};
 use crate::frame::rect::TILE;
 use crate::gpu::Gpu;
@@ -109,6 +110,8 @@ pub struct FrameResources {
     /// The contents of `view` for the first sample.
     first_view: GpuView,
     lights: SyncedBuffer,
+    /// The lights of each tile, and whether the frame has them.
+    light_tiles: (SyncedBuffer, bool),
     environment_map: SyncedBuffer,
     /// The environment in that buffer.
     held_map: Option<Option<PlacedMap>>,
@@ -134,6 +137,7 @@ impl FrameResources {
             view: SyncedBuffer::uniform(device, "view"),
             first_view: GpuView::zeroed(),
             lights: storage("lights"),
+            light_tiles: (storage("tiles of lights"), false),
             environment_map: storage("environment map"),
             held_map: None,
             mesh_materials: storage("mesh materials"),
@@ -206,7 +210,11 @@ impl FrameResources {
     ) -> bool {
         let Gpu { device, queue, .. } = gpu;
         self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
+        let tiles = bytes_of_light_tiles(lights.len(), size, device.limits().max_storage_buffer_binding_size);
+        let tiles_are_new = std::mem::replace(&mut self.light_tiles.1, tiles.is_some()) != tiles.is_some();
         let uploads = [
+            tiles_are_new,
+            self.light_tiles.0.reserve(device, tiles.unwrap_or(0) as usize),
             self.upload_map(gpu, flat),
             self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
             self.lights.set(device, queue, bytemuck::cast_slice(lights)),
@@ -315,6 +323,11 @@ impl FrameResources {
         self.lights.binding()
     }
 
+    /// The lights of each tile, if there are many lights.
+    pub fn light_tiles(&self) -> Option<wgpu::BindingResource<'_>> {
+        self.light_tiles.1.then(|| self.light_tiles.0.binding())
+    }
+
     /// The environment.
     pub fn environment_map(&self) -> wgpu::BindingResource<'_> {
         self.environment_map.binding()
@@ -363,6 +376,7 @@ impl FrameResources {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::light_tiles::LIGHT_TILE;
     use crate::frame::plan::SUBTILES;
     use crate::frame::rect::TILE;
     use crate::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
@@ -403,6 +417,7 @@ mod tests {
             ("light/shadow_settings.wgsl", "SHADOW_COPIES_WORDS", SHADOW_COPIES_WORDS as u32),
             ("scene/hierarchy.wgsl", "COPIES_LINK", COPIES_LINK),
             ("light/occlusion.wgsl", "OCCLUSION_CONES", OCCLUSION_CONES),
+            ("light/light_tiles.wgsl", "LIGHT_TILE", LIGHT_TILE),
             ("common/counts.wgsl", "COMPONENT_COUNTS", COMPONENT_COUNTS as u32),
             ("common/counts.wgsl", "PIXEL_COUNTS", PIXEL_COUNTS as u32),
         ];

@@ -122,9 +122,11 @@ pub fn upload(
 ) -> Result<bool, RenderError> {
     let Some(ShadowWork { settings, cost, .. }) = work else { return Ok(resources.shadows.switch_off()) };
     let SeenScene { flat, meshes, camera, size, standpoints } = seen;
-    let has_meshes = settings.lights > 0 && meshes.iter().any(Option::is_some);
+    let has_meshes = meshes.iter().any(Option::is_some);
     let obstacles = Obstacles { meshes: has_meshes, copies: !flat.instancers.is_empty() };
-    passes.shadow.prepare(&gpu.device, flat, (cost.by_tapes, obstacles), settings.parts(), options)?;
+    // Samples of a still follow rays to the environment with the pipeline of the lights.
+    let used = [settings.is_on(), settings.cones > 0];
+    passes.shadow.prepare(&gpu.device, flat, (cost.by_tapes, obstacles), used, options)?;
     let mut components = query_components(flat, camera.position, &standpoints.all);
     if cost.by_tapes {
         for ((component, tree), at) in components.iter_mut().zip(&chosen.trees).zip(&standpoints.all) {

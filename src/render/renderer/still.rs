@@ -23,6 +23,17 @@ pub struct Film {
     pub lens: Lens,
 }
 
+/// What a sample of a still shows: the scene at a moment.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleMoment<'a> {
+    /// The scene.
+    pub flat: &'a FlatScene,
+    /// Its meshes, parallel to those of the scene.
+    pub meshes: &'a [Option<Arc<TriangleMesh>>],
+    /// The camera.
+    pub camera: &'a Camera,
+}
+
 /// Follows a still while it is rendered.
 pub trait StillWatch {
     /// Called between dispatches with the fraction that is done; returns whether to continue.
@@ -106,6 +117,22 @@ impl Renderer {
         size: [u32; 2],
         watch: &mut dyn StillWatch,
     ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
+        self.render_moments_for(film, &[SampleMoment { flat, meshes, camera }], size, watch)
+    }
+
+    /// [`Renderer::render_samples_for`] of a scene that moves while the shutter is open: the first sample shows the first
+    /// moment, the others take turns.
+    ///
+    /// # Panics
+    /// There is no moment.
+    pub fn render_moments_for(
+        &mut self,
+        film: Film,
+        moments: &[SampleMoment<'_>],
+        size: [u32; 2],
+        watch: &mut dyn StillWatch,
+    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
+        let SampleMoment { flat, meshes, camera } = moments[0];
         let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
         self.accumulate(&mut frame, film.is_transparent);
         let samples = film.samples.max(1);
@@ -127,8 +154,9 @@ impl Renderer {
             if watch.wants_picture() {
                 watch.picture(&self.read_color_of(&frame)?, frame.samples());
             }
-            if film.lens.is_open() {
+            if film.lens.is_open() || moments.len() > 1 {
                 let (index, is_transparent) = (frame.samples(), film.is_transparent);
+                let SampleMoment { flat, meshes, camera } = moments[index as usize % moments.len()];
                 let view = film.lens.view(camera, size[1], index, samples);
                 frame = self.begin_at(Slot::Full, flat, meshes, &view, size, OverlaySettings::default())?;
                 self.set_sample(&mut frame, Sampling { index, is_transparent }, view.offset);

@@ -70,9 +70,10 @@ impl ShadowSettings {
         }
     }
 
-    /// Whether there are shadows, and occlusion.
+    /// Whether cones or rays to lights or, in a sample, to the environment are followed; and whether the cones of
+    /// occlusion are.
     pub fn parts(&self) -> [bool; 2] {
-        [self.lights > 0, self.cones > 0]
+        [self.lights > 0 || self.cones > 0 && self.sample > 0, self.cones > 0]
     }
 
     /// Whether there is anything to do.

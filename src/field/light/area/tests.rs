@@ -4,6 +4,7 @@ use super::super::lighting::lighting_incoming;
 use super::*;
 use crate::FlatLight;
 use crate::light::brdf::brdf_direct;
+use crate::light::lobes::{density, half_vector};
 use isolith_scene::{Falloff, Light, LightKind, NodeId};
 
 /// Samples of an integral.
@@ -168,6 +169,73 @@ fn highlights_are_near_those_of_the_integral() {
         }
         let [mean, p99] = statistics(errors);
         assert!(mean < most[0] && p99 < most[1], "{roughness}: mean {mean}, p99 {p99}");
+    }
+}
+
+/// What [`integral`] gives for GGX, by samples of the lobe: for lobes that are narrow beside the light.
+fn integral_by_lobe(random: &mut Random, light: &GpuLight, point: &ShadingPoint) -> f64 {
+    let [middle, right, up, direction] = [light.position, light.right, light.up, light.direction].map(vector);
+    let is_lit = |to_light: DVec3| {
+        if light.kind != GpuLight::RECTANGLE {
+            return to_light.angle_between(middle) < (f64::from(light.radius) / middle.length()).asin();
+        }
+        let hit = to_light * (middle.dot(direction) / to_light.dot(direction)) - middle;
+        let within = |side: DVec3| hit.dot(side).abs() <= side.length_squared();
+        to_light.dot(direction) < 0.0 && within(right) && within(up)
+    };
+    let alpha = point.material.roughness.powi(2);
+    let mut sum = 0.0;
+    for i in 0..SAMPLES {
+        let unit = [i % 64, i / 64].map(|at| (at as f64 + random.number()) / 64.0);
+        let half = half_vector(point.to_eye, alpha, unit);
+        let to_light = 2.0 * point.to_eye.dot(half) * half - point.to_eye;
+        if to_light.z > 0.0 && is_lit(to_light) {
+            sum += ggx(point, to_light).x / PI / density(point.to_eye, alpha, to_light);
+        }
+    }
+    sum / SAMPLES as f64
+}
+
+/// The error of highlights by roughness and by the size of the light, as a share of its radiance: the chart of
+/// `benches/README.md`. Both kinds of light, near the mirrored direction.
+#[test]
+#[allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
+fn the_chart_of_highlights_has_no_hole() {
+    const ROUGHNESS: [f64; 5] = [0.1, 0.2, 0.4, 0.7, 1.0];
+    // Half angles in degrees.
+    const SIZES: [f64; 5] = [1.0, 4.0, 12.0, 30.0, 50.0];
+    let mut random = Random(3);
+    for (kind, most) in [(GpuLight::POINT, 0.09), (GpuLight::RECTANGLE, 0.09)] {
+        for roughness in ROUGHNESS {
+            let material = SurfaceMaterial { roughness, ..SurfaceMaterial::default() };
+            let row = SIZES.map(|size| {
+                let errors = (0..60).map(|_| {
+                    let (slant, turn) = (random.within([0.0, 1.1]), random.within([0.0, 2.0 * PI]));
+                    let middle = DVec3::new(slant.sin() * turn.cos(), slant.sin() * turn.sin(), slant.cos());
+                    let aside = random.direction() * random.number() * (roughness + size.to_radians()) * 0.5;
+                    let to_eye = DVec3::new(-middle.x, -middle.y, middle.z) + aside;
+                    let to_eye = (to_eye * DVec3::new(1.0, 1.0, 0.0) + DVec3::Z * to_eye.z.max(0.15)).normalize();
+                    let light = match kind {
+                        GpuLight::POINT => sphere(middle * 3.0, 3.0 * size.to_radians().sin()),
+                        _ => rectangle(
+                            middle * 3.0,
+                            -middle,
+                            6.0 * size.to_radians().tan(),
+                            3.0 * size.to_radians().tan(),
+                        ),
+                    };
+                    let point = point(material, to_eye);
+                    let truth = match roughness {
+                        ..0.3 => integral_by_lobe(&mut random, &light, &point),
+                        _ => integral(&mut random, &light, &point, ggx).x,
+                    };
+                    (estimated(&light, &point, ggx).x - truth).abs()
+                });
+                errors.sum::<f64>() / 60.0
+            });
+            println!("kind {kind}, roughness {roughness}: {row:.3?}");
+            assert!(row.iter().all(|error| *error < most), "kind {kind}, roughness {roughness}: {row:?}");
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// The light of a scene without lights.
-const LIGHT: PixelLight = PixelLight { lights: 2, shadows: 0.0 };
+const LIGHT: PixelLight = PixelLight { lights: 2, tiled: false, shadows: 0.0 };
 
 fn shown(view: &SampleView, size: [u32; 2]) -> PlannedView<'_> {
     PlannedView { view, size, traced: TracedParts::default() }
