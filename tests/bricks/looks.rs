@@ -69,6 +69,18 @@ fn apart(a: &GBuffer, b: &GBuffer, pixels: &[usize]) -> f64 {
     pixels.iter().map(of).sum::<f64>() / pixels.len() as f64
 }
 
+/// How far apart the outlines of two pictures are on average, in pixels: the pixels that only one of them shows, for
+/// each of the outline.
+fn silhouette([a, b]: [&GBuffer; 2]) -> f64 {
+    let hit = |picture: &GBuffer, i: usize| picture.depth[i].is_finite();
+    let side = SIDE as usize;
+    let apart = (0..a.depth.len()).filter(|i| hit(a, *i) != hit(b, *i)).count();
+    let is_edge = |i: &usize| hit(a, *i) != hit(a, i - 1) || hit(a, *i) != hit(a, i - side);
+    let edge = (side..a.depth.len()).filter(is_edge).count();
+    println!("outlines: {apart} pixels differ of {edge}");
+    apart as f64 / edge.max(1) as f64
+}
+
 /// The mean color of these pixels.
 fn mean(picture: &GBuffer, pixels: &[usize]) -> DVec3 {
     let color = |i: &usize| DVec3::from([0, 1, 2].map(|c| f64::from(picture.color[*i][c])));
@@ -88,6 +100,8 @@ fn a_field_looks_as_the_triangles_of_its_file() {
             assert_eq!(bench.flat.textures.looks.len(), usize::from(own));
             let pixels = inner([&triangles, &field]);
             assert!(pixels.len() > if away < 2.0 { 2_000 } else { 60 }, "{}", pixels.len());
+            let outlines = silhouette([&triangles, &field]);
+            assert!(outlines < 0.3, "{away}: the outlines are {outlines} pixels apart");
             let of_means = (mean(&triangles, &pixels) - mean(&field, &pixels)).abs().max_element();
             [apart(&triangles, &field, &pixels), of_means]
         });
