@@ -27,6 +27,7 @@ pictures![
     "modifiers",
     "ocean",
     "operators",
+    "painted",
     "pawn",
     "puppet",
     "shadows",

@@ -109,7 +109,9 @@ fn a_field_looks_as_the_triangles_of_its_file() {
         println!(
             "{away} times as far: {own:.2} of 255, means {own_mean:.2}; in another material {plain:.2}, {plain_mean:.2}"
         );
-        assert!(own_mean < 12.0 && plain_mean > 40.0, "{away}: {own_mean} and {plain_mean}");
+        // Far away the mean over 150 pixels of an image of black and clay is itself uncertain by 5.
+        let most = if away > 2.0 { 20.0 } else { 12.0 };
+        assert!(own_mean < most && plain_mean > 4.0 * most, "{away}: {own_mean} and {plain_mean}");
         assert!(away > 2.0 || (own < 12.0 && plain > 4.0 * own), "{away}: {own} and {plain}");
     }
 }
