@@ -45,6 +45,6 @@ pub(super) fn scene() -> Scene {
 
     builder.sun("Sun", [-0.6, 0.9, 0.7], [1.0, 0.94, 0.85], 1.0);
     builder.sun("Sky", [0.8, 0.4, 0.3], [0.6, 0.75, 1.0], 0.35);
-    builder.camera([0.05, 0.95, 3.1], [0.05, 0.44, 0.0], 38.0);
+    builder.camera([0.05, 0.95, 3.1], [0.05, 0.44, 0.0], 50.0);
     builder.finish()
 }
