@@ -373,8 +373,10 @@ fn emit_operand(
             flat.params.push([blend_params[0], *distance_scale as f32, blend_params[1], blend_params[2]]);
             flat.params.extend(placing_rows(local_from_world, within.origin));
             let mut packed = prepared.parameters.map(|v| v as f32);
-            if prepared.kind == ShapeKind::Heightmap && !within.is_hard {
-                packed[7] = 0.0;
+            if prepared.kind == ShapeKind::Heightmap && within.is_hard {
+                // The side of its cells: its field may then be steeper than 1 away from the surface.
+                let q = &prepared.parameters;
+                packed[7] = (2.0 * q[0] / q[5]).min(2.0 * q[2] / q[6]) as f32;
             }
             let rows = prepared.kind.parameter_rows();
             flat.params.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));

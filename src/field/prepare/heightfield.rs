@@ -3,8 +3,9 @@
 //! Parameters: half the width, depth of the ground, half the length, greatest height; then one over √(1 + L²) for the
 //! greatest slope L, the number of rows, seed or sharpness. Rows: frequency, height and salt of each layer of noise;
 //! or the waves per meter along X and along Z, height and phase (in turns) of each wave; or each height of an image
-//! with its neighbors along X, line by line, in which case the counts are columns and lines, the last parameter is the
-//! side of a cell, and the fourth number of a height holds the scales around it, see [`scales_around`].
+//! with its neighbors along X, line by line, in which case the counts are columns and lines, the last parameter is 0
+//! or, where fields need only be lower bounds, the side of a cell, and the fourth number of a height holds the scales
+//! around it, see [`scales_around`].
 
 use std::f64::consts::{PI, TAU};
 
@@ -80,7 +81,6 @@ pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> PreparedParams
     scales_around(&mut rows, image.size, cell);
     let mut out = prepared(size, height, steepest, lines, rows);
     out.parameters[5] = columns;
-    out.parameters[7] = cell[0].min(cell[1]).max(LEAST_CELL);
     out
 }
 
