@@ -22,7 +22,6 @@ mod embed;
 mod files;
 mod golden;
 mod gpu;
-mod heightmaps;
 mod latency;
 mod lights;
 mod march_settings;

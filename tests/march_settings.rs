@@ -83,7 +83,7 @@ fn what_is_cut_off_is_not_picked_and_casts_its_shadow() {
 }
 
 /// Evaluations of the field per pixel, and the depths.
-pub fn drawn(scene: &BenchScene) -> (f64, Vec<f32>) {
+fn drawn(scene: &BenchScene) -> (f64, Vec<f32>) {
     let gpu = shared().gpu.clone();
     let options = Options { counting: true, ..Renderer::options(&gpu) };
     let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");

@@ -3,12 +3,7 @@
 // nowhere more than the distance to it.
 
 fn sdf_heightfield(p: vec3f, a: vec4f, b: vec4f, height: f32) -> f32 {
-    return sdf_heightfield_above(p, a, (p.y - height) * b.x);
-}
-
-// The same solid, from a lower bound of the distance to its heights.
-fn sdf_heightfield_above(p: vec3f, a: vec4f, above: f32) -> f32 {
     let d = vec3f(abs(p.x) - a.x, abs(p.y - 0.5 * (a.w - a.y)) - 0.5 * (a.w + a.y), abs(p.z) - a.z);
     let outside = length(max(d, vec3f(0.0))) + min(max(d.x, max(d.y, d.z)), 0.0);
-    return max(above, outside);
+    return max((p.y - height) * b.x, outside);
 }

@@ -36,13 +36,7 @@ impl MaterialUse<'_> {
     }
 }
 
-/// Whether operands meet without blends, and by joins that only choose between their values.
-fn joins_hard(operands: &[Operand<'_>]) -> bool {
-    operands.iter().all(|operand| operand.blend.radius == 0.0 && !operand.join.is_extended())
-}
-
 /// The space that a fold is in.
-#[derive(Clone, Copy)]
 struct Within {
     /// The point that its numbers are relative to.
     origin: DVec3,
@@ -50,8 +44,6 @@ struct Within {
     space_from_world: DAffine3,
     /// The innermost array around it.
     repeated: Option<RepeatedSpace>,
-    /// Whether everything around it joins hard, so that fields need only be lower bounds.
-    is_hard: bool,
 }
 
 /// Appends the component's entries and returns its description.
@@ -67,7 +59,7 @@ pub(super) fn emit(
     let first = flat.nodes.len();
     let params = flat.params.len().next_multiple_of(ROW_ALIGNMENT);
     flat.params.resize(params, [0.0; 4]);
-    let within = Within { origin, space_from_world: DAffine3::IDENTITY, repeated: None, is_hard: joins_hard(operands) };
+    let within = Within { origin, space_from_world: DAffine3::IDENTITY, repeated: None };
     let stack = emit_fold(flat, operands, &within, material);
     let data = flat.params.len();
     emit_data(flat, operands, &mut (first..));
@@ -386,10 +378,7 @@ fn emit_operand(
             flat.nodes.push(FlatNode { code: code(prepared.kind as u32), extent: 1, params, material });
             flat.params.push([blend_params[0], *distance_scale as f32, blend_params[1], blend_params[2]]);
             flat.params.extend(placing_rows(local_from_world, within.origin));
-            let mut packed = prepared.parameters.map(|v| v as f32);
-            if prepared.kind == ShapeKind::Heightmap && !within.is_hard {
-                packed[7] = 0.0;
-            }
+            let packed = prepared.parameters.map(|v| v as f32);
             let rows = prepared.kind.parameter_rows();
             flat.params.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
             // A placeholder: `emit_data` writes the location of the payload here.
@@ -403,8 +392,7 @@ fn emit_operand(
                 operand.bound_slope,
                 &operand.cull_box.translated(-within.origin),
             ));
-            let within = Within { is_hard: within.is_hard && joins_hard(inner), ..*within };
-            let stack = emit_fold(flat, inner, &within, material);
+            let stack = emit_fold(flat, inner, within, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }
@@ -420,8 +408,7 @@ fn emit_operand(
             let space_from_world = *local_from_world * within.space_from_world;
             let repeats = *kind == ModifierKind::Repeat;
             let own = repeats.then(|| RepeatedSpace::new(&modified.rows, &space_from_world)).flatten();
-            let inner =
-                Within { origin: DVec3::ZERO, space_from_world, repeated: own.or(within.repeated), is_hard: false };
+            let inner = Within { origin: DVec3::ZERO, space_from_world, repeated: own.or(within.repeated) };
             let stack = emit_fold(flat, content, &inner, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1

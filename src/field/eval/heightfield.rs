@@ -17,44 +17,13 @@ pub fn sdf_ocean<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
 
 /// A landscape from an image; a lower bound of the distance.
 pub fn sdf_heightmap<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    let gap = p[1] - heightmap_height(p[0], p[2], q, rows);
-    let size = gap.value().abs();
-    // The greatest of several lower bounds: by the steepest slope of all, or by that of some cells around and the
-    // distance of those beyond.
-    let near = RADII.iter().zip(heightmap_scales(p[0].value(), p[2].value(), q, rows));
-    let mut above = gap * q[4];
-    for (radius, scale) in near {
-        let far = radius * q[7];
-        if (size * scale).min(far) > above.value().abs() {
-            let bound = if size * scale < far { gap * scale } else { T::constant(far) };
-            above = if gap.value() < 0.0 && size * scale >= far { -bound } else { bound };
-        }
-    }
-    solid(p, q, above)
-}
-
-/// Around a cell, the numbers of cells within which the steepest slopes are known.
-pub const RADII: [f64; 3] = [4.0, 16.0, 64.0];
-
-/// One over √(1 + L²) for the steepest slope L within each of [`RADII`] around a place.
-fn heightmap_scales(x: f64, z: f64, q: &[f64; 8], rows: Data<'_>) -> [f64; 3] {
-    let cell = |v: f64, half: f64, count: f64| {
-        let cells = v.clamp(-half, half) * (0.5 * count / half.max(1e-9)) + 0.5 * count;
-        cells.floor().min(count - 1.0)
-    };
-    let (column, line) = (cell(x, q[0], q[5]), cell(z, q[2], q[6]));
-    let all = rows.row(1 + (line * q[5] + column) as usize)[3] as u32;
-    [all >> 16, all >> 8 & 255, all & 255].map(|byte| f64::from(byte) / 255.0)
+    heightfield(p, q, heightmap_height(p[0], p[2], q, rows))
 }
 
 /// The solid below the heights and within the box. The height above the surface, over √(1 + L²) for the steepest
 /// slope L, never exceeds the distance to the surface.
 fn heightfield<T: Real>(p: [T; 3], q: &[f64; 8], height: T) -> T {
-    solid(p, q, (p[1] - height) * q[4])
-}
-
-/// The same from a lower bound of the distance to the heights.
-fn solid<T: Real>(p: [T; 3], q: &[f64; 8], above: T) -> T {
+    let above = (p[1] - height) * q[4];
     let (middle, half) = (0.5 * (q[3] - q[1]), 0.5 * (q[3] + q[1]));
     let d = [p[0].abs() - q[0], (p[1] - middle).abs() - half, p[2].abs() - q[2]];
     let most = d[0].max(d[1].max(d[2]));

@@ -30,7 +30,7 @@ pub use component::{
 };
 pub use ellipsoid::sdf_ellipsoid;
 pub use heightfield::{
-    RADII, heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,
+    heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,
 };
 pub use modifier::*;
 pub use op::{

@@ -3,13 +3,11 @@
 //! Parameters: half the width, depth of the ground, half the length, greatest height; then one over √(1 + L²) for the
 //! greatest slope L, the number of rows, seed or sharpness. Rows: frequency, height and salt of each layer of noise;
 //! or the waves per meter along X and along Z, height and phase (in turns) of each wave; or each height of an image
-//! with its neighbors along X, line by line, in which case the counts are columns and lines, the last parameter is the
-//! side of a cell, and the fourth number of a height holds the scales around it, see [`scales_around`].
+//! with its neighbors along X, line by line, in which case the counts are columns and lines.
 
 use std::f64::consts::{PI, TAU};
 
 use super::prepared_params::PreparedParams;
-use crate::eval::RADII;
 use isolith_scene::Heights;
 
 /// The steepest slope of one layer of noise with heights and cells of 1: the heights of two corners differ by at most
@@ -75,73 +73,9 @@ pub fn ocean(
 /// A landscape from an image.
 pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> PreparedParams {
     let [columns, lines] = image.size.map(|n| n as f64);
-    let cell = [size[0] / columns, size[2] / lines];
-    let (mut rows, steepest) = spline(image, cell, height);
-    scales_around(&mut rows, image.size, cell);
+    let (rows, steepest) = spline(image, [size[0] / columns, size[2] / lines], height);
     let mut out = prepared(size, height, steepest, lines, rows);
     out.parameters[5] = columns;
-    out.parameters[7] = cell[0].min(cell[1]).max(LEAST_CELL);
-    out
-}
-
-/// Puts one over √(1 + L²) into the fourth number of each height, for the steepest slope L within each of [`RADII`]
-/// cells around: in 255ths, rounded down, as three bytes of a whole number. Maxima over ever larger squares, one axis
-/// after the other (Tevs, Ihrke and Seidel, "Maximum mipmaps", 2008, in a form without look-ups in levels).
-fn scales_around(rows: &mut [[f64; 4]], [columns, lines]: [usize; 2], cell: [f64; 2]) {
-    let cell = cell.map(|side| side.max(LEAST_CELL));
-    let slope = |column: usize, line: usize| {
-        let along_z = |at: usize, column: usize| {
-            let [above, below] = [at, (at + 1).min(lines - 1)].map(|line| rows[line * columns + column][1]);
-            (below - above).abs()
-        };
-        let around = |at: usize, count: usize| at.saturating_sub(1)..=(at + 1).min(count - 1);
-        let along_x = around(line, lines).map(|line| {
-            let [a, b, c, _] = rows[line * columns + column];
-            (b - a).abs().max((c - b).abs())
-        });
-        let along_z =
-            around(column, columns).flat_map(|column| [along_z(line.saturating_sub(1), column), along_z(line, column)]);
-        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let (mut along_x, mut along_z) = (along_x, along_z);
-        (most(&mut along_x) / cell[0]).hypot(most(&mut along_z) / cell[1])
-    };
-    let cells = (0..lines).flat_map(|line| (0..columns).map(move |column| (column, line)));
-    let slopes: Vec<f64> = cells.map(|(column, line)| slope(column, line)).collect();
-    let mut bytes = vec![0_u32; slopes.len()];
-    for radius in RADII {
-        let along_x = greatest_around(&slopes, [columns, lines], radius as usize, 1);
-        let steepest = greatest_around(&along_x, [columns, lines], radius as usize, columns);
-        for (bytes, steepest) in bytes.iter_mut().zip(steepest) {
-            *bytes = *bytes << 8 | (255.0 / 1.0_f64.hypot(steepest)).floor() as u32;
-        }
-    }
-    for (row, bytes) in rows.iter_mut().zip(bytes) {
-        row[3] = f64::from(bytes);
-    }
-}
-
-/// The greatest value up to `radius` cells away along one axis: along X for a `stride` of 1, else along Z.
-fn greatest_around(values: &[f64], [columns, lines]: [usize; 2], radius: usize, stride: usize) -> Vec<f64> {
-    let mut out = vec![0.0; values.len()];
-    let (rows, length, step) = if stride == 1 { (lines, columns, columns) } else { (columns, lines, 1) };
-    for row in 0..rows {
-        let at = |i: usize| row * step + i * stride;
-        // The places of what may still become the greatest: falling values.
-        let mut open: std::collections::VecDeque<usize> = std::collections::VecDeque::new();
-        for next in 0..length + radius {
-            if next < length {
-                while open.back().is_some_and(|last| values[at(*last)] <= values[at(next)]) {
-                    open.pop_back();
-                }
-                open.push_back(next);
-            }
-            let Some(middle) = next.checked_sub(radius) else { continue };
-            while open.front().is_some_and(|first| first + radius < middle) {
-                open.pop_front();
-            }
-            out[at(middle)] = open.front().map_or(0.0, |first| values[at(*first)]);
-        }
-    }
     out
 }
 
