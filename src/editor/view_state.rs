@@ -65,9 +65,6 @@ pub struct GridView {
     pub fades: bool,
 }
 
-/// The number of bookmarks.
-pub const BOOKMARKS: usize = 4;
-
 /// A camera that one looks through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through {
@@ -124,8 +121,6 @@ pub struct ViewState {
     pub locks_camera: bool,
     /// Whether its frame shows where action and titles are safe.
     pub show_safe_areas: bool,
-    /// Views to come back to.
-    pub bookmarks: [Option<Navigation>; BOOKMARKS],
     /// The shading of the lit picture.
     pub shading: Shading,
     /// The view mode.
@@ -186,7 +181,6 @@ impl Default for ViewState {
             frame_aspect: 16.0 / 9.0,
             locks_camera: false,
             show_safe_areas: false,
-            bookmarks: [None; BOOKMARKS],
             shading: Shading::default(),
             view_mode: ViewMode::Shaded,
             samples: SAMPLES,
