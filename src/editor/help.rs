@@ -198,8 +198,7 @@ mod tests {
         let pages: HashSet<_> = PAGES.iter().map(|page| page.id).collect();
         assert_eq!(pages.len(), PAGES.len());
         // Those beside the viewport are viewports.
-        let is_other = |panel: &Box<dyn crate::panel::Panel>| !panel.id().starts_with("view-");
-        for panel in crate::panels::all().into_iter().filter(is_other) {
+        for panel in crate::panels::all().into_iter().filter(|panel| !panel.id().starts_with("view-")) {
             assert!(pages.contains(panel.id()), "there is no page of help about {}", panel.title());
         }
         assert!(PAGES.iter().all(|page| !page.purpose.is_empty() && !page.actions.is_empty()));
