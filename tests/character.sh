@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds a robot of 40 parts by hand in the real window, by keys and pointer. Takes a picture after each group of parts, and
+# Builds a robot of 41 parts by hand in the real window, by keys and pointer. Takes a picture after each group of parts, and
 # checks the scene that it saves.
 #
 #   tests/character.sh PROGRAM [FOLDER FOR PICTURES]
@@ -40,7 +40,25 @@ pause=${PAUSE:-0.3}
 keys() { xdotool key --delay 40 "$@"; sleep "$pause"; }
 letters() { xdotool type --delay 20 -- "$1"; sleep "$pause"; }
 click() { xdotool mousemove "$1" "$2"; sleep "$pause"; xdotool click 1; sleep "$pause"; }
-picture() { [ -z "$pictures" ] || { mkdir -p "$pictures"; sleep "${SETTLE:-8}"; import -window root "$pictures/$1.png"; }; }
+# Saves, and waits until all that was typed so far is in the file: a slow machine is behind.
+file=$work/character.isolith
+saved() {
+    keys ctrl+s
+    if [ ! -e "$file" ]; then
+        keys ctrl+a; letters "$file"; keys Return
+    fi
+    for _ in $(seq 900); do
+        [ "$(grep -c '"object"' "$file" 2>/dev/null || true)" != "$parts" ] || return 0
+        sleep 1
+    done
+    echo "the file does not hold $parts parts" >&2
+    return 1
+}
+# A picture once it has settled.
+picture() {
+    saved
+    [ -z "$pictures" ] || { mkdir -p "$pictures"; sleep "${SETTLE:-8}"; import -window root "$pictures/$1.png"; }
+}
 
 parts=0 gestures=0
 # The field of the position along X, in the inspector of an object at the top.
@@ -76,6 +94,10 @@ both() {
     again "-$1" "${@:2}"
 }
 
+# Shapes in one clay are drawn faster; the ground is where everything stands.
+keys z
+add plane 0 0 0 0 0 0 1 1 1
+
 # The body, the belly, the head, the feet and the pack.
 add box 0 1.3 0 0 0 0 0.95 0.85 0.6
 again 0 0.74 0 0 0 0 0.7 0.26 0.46
@@ -105,26 +127,19 @@ both 0.2 2.26 0.31 0 0 0 0.2 0.2 0.12
 again 0 2.8 0 0 0 0 0.16 0.16 0.16
 picture lights
 
-# The joints: shoulders, elbows, hands.
+# The joints: shoulders, elbows, hands, hips, knees.
 add sphere 0.6 1.56 0 0 0 0 0.4 0.4 0.4
 again -0.6 1.56 0 0 0 0 0.4 0.4 0.4
 both 0.7 1.06 0.03 0 0 0 0.26 0.26 0.26
 both 0.7 0.74 0.28 0 0 0 0.26 0.26 0.26
-# All parts into one group, which melts them a little where they meet.
+both 0.24 0.58 0 0 0 0 0.28 0.28 0.28
+both 0.24 0.24 0.06 0 0 0 0.24 0.24 0.24
+# Seen from the front, under the light of the scene.
 keys Escape
-keys ctrl+a
-keys u
 keys Home
-picture character
-
-file=$work/character.isolith
-keys ctrl+s
-keys ctrl+a
-letters "$file"
-keys Return
-sleep 3
+keys z z
+SETTLE=${SETTLE_LAST:-60} picture character
 [ -z "$pictures" ] || cp "$file" "$pictures/character.isolith"
-found=$(grep -c '"object"' "$file")
-echo "$parts parts in $gestures gestures; the file holds $found"
+echo "$parts parts in $gestures gestures"
 [ -s "$work/errors" ] && sed 's/^/stderr: /' "$work/errors"
-[ "$found" = "$parts" ] && [ "$parts" -ge 40 ]
+[ "$parts" -ge 40 ]

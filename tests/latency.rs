@@ -75,7 +75,7 @@ fn a_dragged_value_is_in_the_picture_soon() {
         .collect();
     assert!(harness.state().document().revision() > before + 30, "each event changes the scene");
     times.sort();
-    let [median, late] = [times[EVENTS / 2], times[EVENTS * 99 / 100]];
+    let [median, late] = [times[EVENTS / 2], times[EVENTS * 99 / 100 - 1]];
     note(&format!("577 nodes, event to picture: median {median:?}, p99 {late:?}"));
     assert!(median <= MEDIAN, "{median:?}");
 }

@@ -2,20 +2,23 @@
 # Takes pictures of the window with every panel and dialog open, in both themes and at three sizes, to be looked at.
 #
 #   tests/pictures.sh PROGRAM FOLDER [SCENE [SIZES [THEMES]]]
+#   tests/pictures.sh PROGRAM FOLDER readme
 #
-# A size is WIDTHxHEIGHT@SCALE. The screen has no monitor; a name of a picture is THEME-SIZE-PANEL.png.
+# A size is WIDTHxHEIGHT@SCALE. The screen has no monitor; a name of a picture is THEME-SIZE-PANEL.png. With "readme" it takes
+# those of README.md instead.
 set -euo pipefail
 
 program=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
 root=$(cd "$(dirname "$0")/.." && pwd)
-scene=$(realpath "${3:-$root/scenes/character.json}")
+scene=${3:-$root/scenes/character.json}
+[ "$scene" = readme ] || scene=$(realpath "$scene")
 sizes=${4:-1280x800@1 1920x1080@1 2560x1440@1.5}
 themes=${5:-Dark Light}
 # Seconds that a picture of the scene may take to settle, and a panel.
 settle_scene=${SETTLE_SCENE:-12}
-settle_panel=${SETTLE_PANEL:-2}
+settle_panel=${SETTLE_PANEL:-3}
 
 work=$(mktemp -d)
 export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data XDG_CONFIG_HOME=$work/config XDG_RUNTIME_DIR=$work/run
@@ -76,11 +79,49 @@ opened() {
     keys Escape; settle 0.5
 }
 
+# The pictures of README.md: a scene, what is done in it, and how long it may take to settle.
+#   shown NAME THEME SIZE SCENE COMMAND...
+shown() {
+    local name=$1
+    theme=$2 size=$3
+    open "$root/scenes/$4"
+    settle "$settle_scene"
+    "${@:5}"
+    # Off the picture, so that no mark is under the pointer.
+    xdotool mousemove $(at 600 12)
+    settle "${SETTLE_LAST:-90}"
+    import -window root "$folder/$name.png"
+    close
+}
+row() { click $(at 110 "$1"); settle; }
+# Runs commands by their names, with the pointer over the viewport.
+commands() {
+    local name
+    for name in "$@"; do
+        keys F3; settle; xdotool type --delay 30 -- "$name"; settle; keys Return; settle
+    done
+}
+# Two views, the second in clay.
+side_by_side() {
+    commands "Two views"
+    xdotool mousemove $(at 800 300); settle
+    keys z
+}
+if [ "$scene" = readme ]; then
+    shown screenshot Dark 1280x800@1 character.json row 218
+    shown light Light 1920x1080@1.5 showcase.json row 170
+    shown views Dark 1280x800@1 pawn.json side_by_side
+    shown instancing Dark 1280x800@1 ocean.json row 146
+    exit 0
+fi
+
 for theme in $themes; do
     for size in $sizes; do
         open "$scene"
         settle "$settle_scene"
         picture scene
+        # Shapes in one clay are drawn faster behind what is open.
+        keys z
         keys ctrl+a; settle; picture all
         click $(at 120 190); settle; picture node
         opened palette shift+a

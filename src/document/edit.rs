@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::change::Change;
 use super::{copying, keys, links, structure};
 use isolith_scene::{
-    Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, PackedFiles,
-    ParamPath, ParamValue, Scene, SceneError, Timeline, Track, check,
+    Bookmark, Changed, DisplaySettings, Environment, Group, Keyframe, MAX_BOOKMARKS, Material, MaterialId, Node,
+    NodeId, NodeKind, PackedFiles, ParamPath, ParamValue, Scene, SceneError, Timeline, Track, check,
 };
 
 /// A change to a scene. Values are checked against [`isolith_scene::limits`].
@@ -87,6 +87,8 @@ pub enum Edit {
     SetDisplay(DisplaySettings),
     /// Replaces the files that travel within the scene.
     SetPacked(PackedFiles),
+    /// Keeps a view in the bookmark of this number, or none.
+    SetBookmark(usize, Option<Bookmark>),
     /// Changes one parameter of a node, a material, the environment or the display.
     SetParam {
         /// The path of the parameter.
@@ -160,6 +162,7 @@ impl Edit {
             Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
             Self::SetTimeline(timeline) => set_timeline(scene, timeline),
             Self::SetPacked(packed) => set_packed(scene, packed),
+            Self::SetBookmark(index, view) => set_bookmark(scene, index, view),
             Self::SetKeys(keys) => keys::set_keys(scene, keys),
             Self::RemoveKeys(keys) => keys::remove_keys(scene, &keys),
             Self::SetTracks(tracks) => keys::set_tracks(scene, tracks),
@@ -212,6 +215,7 @@ impl Edit {
             Self::SetTimeline(_) => "Change timeline".into(),
             Self::SetPacked(packed) if packed.is_empty() => "Unpack files".into(),
             Self::SetPacked(_) => "Pack files".into(),
+            Self::SetBookmark(index, _) => format!("Set bookmark {}", index + 1),
             Self::SetKeys(keys) => format!("Insert {}", counted(keys.len(), "key")),
             Self::RemoveKeys(keys) => format!("Delete {}", counted(keys.len(), "key")),
             Self::SetTracks(_) => "Move keys".into(),
@@ -287,6 +291,20 @@ fn set_packed(scene: &mut Arc<Scene>, packed: PackedFiles) -> Result<Change, Sce
         return Ok(Change::NONE);
     }
     Arc::make_mut(scene).packed = packed;
+    Ok(Change::VALUE)
+}
+
+fn set_bookmark(scene: &mut Arc<Scene>, index: usize, view: Option<Bookmark>) -> Result<Change, SceneError> {
+    let field = format!("bookmarks[{index}]");
+    let invalid = |reason: String| SceneError::Invalid { subject: "the scene".into(), field: field.clone(), reason };
+    if scene.bookmarks.get(index).is_none() {
+        return Err(invalid(format!("there are {MAX_BOOKMARKS} bookmarks")));
+    }
+    view.as_ref().map_or(Ok(()), Bookmark::check).map_err(invalid)?;
+    if scene.bookmarks[index] == view {
+        return Ok(Change::NONE);
+    }
+    Arc::make_mut(scene).bookmarks[index] = view;
     Ok(Change::VALUE)
 }
 

@@ -8,8 +8,9 @@ use super::navigation::Navigation;
 use super::state::EditorState;
 use super::view_state::Through;
 use super::{selection, theme};
+use isolith_document::Edit;
 use isolith_geometry::Camera;
-use isolith_scene::{NodeId, NodeKind};
+use isolith_scene::{Bookmark, NodeId, NodeKind, check};
 
 /// Share of the viewport that the frame fills.
 const SHARE: f64 = 0.94;
@@ -116,14 +117,22 @@ pub fn paint(state: &EditorState, painter: &Painter) {
 
 /// Keeps the view in a bookmark.
 pub fn set_bookmark(state: &mut EditorState, index: usize) {
-    state.view.bookmarks[index] = Some(state.view.navigation);
+    let Navigation { target, distance, rotation, fov_y, orthographic, .. } = state.view.navigation;
+    let (target, rotation) = (target.to_array(), rotation.to_array());
+    let kept = Bookmark { target, distance, rotation, fov_y, orthographic };
+    state.session.apply(Edit::SetBookmark(index, Some(kept)));
     state.session.messages.push(Message::success(format!("Bookmark {} is this view.", index + 1)));
 }
 
 /// Shows the view of a bookmark.
 pub fn show_bookmark(state: &mut EditorState, index: usize) {
-    match state.view.bookmarks[index] {
-        Some(view) => state.view.navigation = view,
+    match state.session.document.scene().bookmarks.get(index).copied().flatten() {
+        Some(Bookmark { target, distance, rotation, fov_y, orthographic }) => {
+            let rotation = check::settled_rotation(DQuat::from_array(rotation));
+            let target = DVec3::from_array(target);
+            state.view.navigation =
+                Navigation { target, distance, rotation, fov_y, orthographic, leaves_axis: orthographic };
+        }
         None => {
             let text = format!("Bookmark {} is empty. *Set bookmark* keeps a view there.", index + 1).replace('*', "");
             state.session.messages.push(Message::info(text));

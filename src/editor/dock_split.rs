@@ -2,7 +2,7 @@
 
 use egui::Vec2;
 
-use super::side_views::SIDES;
+use super::view_slots::SIDES;
 use isolith_document::{Docked, DockedPart, PanelLayout};
 
 /// The layout with this many viewports, 1, 2 or 4, in the room of those that it has now, in points. All other panels stay

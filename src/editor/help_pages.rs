@@ -29,6 +29,7 @@ pub const PAGES: &[HelpPage] = &[
             ("Look from a side", "1, 3, 7, with Ctrl from the other side; 5 for perspective or orthographic"),
             ("Fly", "Hold the right button: W, A, S, D, Q, E; the wheel changes the speed"),
             ("Keep a view, come back", "Shift F5 to F8, F5 to F8"),
+            ("See several sides", "View › Split view: two or four; keys mean the one under the pointer"),
             ("Shade otherwise", "The buttons at the upper right, or Z"),
         ],
     },

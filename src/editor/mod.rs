@@ -35,7 +35,7 @@
 //! | `camera_view` | looking through a camera, its frame; bookmarks of views |
 //! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
 //! | `packing` | the files of models within the scene, and beside it again |
-//! | `side_views`, `side_viewport`, `dock_split` | several viewports: which one is active, its panel, layouts with them |
+//! | `view_slots`, `side_views`, `side_viewport`, `dock_split` | several viewports: which one is active, its panel, layouts with them |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -170,6 +170,7 @@ mod toolbar;
 mod tour;
 mod transforms;
 mod units;
+mod view_slots;
 mod view_state;
 mod viewport;
 mod viewport_click;
@@ -184,6 +185,6 @@ pub use documents::new_document;
 pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 pub use root::Editor;
-pub use side_views::VIEWS;
 pub use state::Example;
+pub use view_slots::VIEWS;
 pub use view_state::{GridView, Picture, ViewSettings};

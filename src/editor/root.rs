@@ -288,7 +288,7 @@ impl Editor {
 
     /// The viewport under the keys, 0 for the main one; [`Editor::view`] is its view.
     pub fn active_view(&self) -> usize {
-        self.state.views.active()
+        self.state.views.active
     }
 
     /// The views of the others that are shown.
@@ -405,7 +405,7 @@ impl Editor {
         (self.state.view.entered, self.state.view.walk, self.state.view.below) = (None, None, None);
         self.state.view.isolated.clear();
         self.state.reset_views();
-        (self.state.view.through, self.state.view.bookmarks) = (None, Default::default());
+        self.state.view.through = None;
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.packing.forget();

@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::panel::{Panel, PanelPlace};
-use super::side_views::SIDES;
 use super::state::EditorState;
+use super::view_slots::SIDES;
 use super::viewport::Viewport;
 
 /// A viewport beside the main one.

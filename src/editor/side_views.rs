@@ -1,89 +1,12 @@
 //! Several viewports at once. The one under the pointer is the active one: its view is that of the editor, so that keys
 //! and commands mean it. The others wait in slots, and are swapped in while they are shown.
 
-use super::navigation::{Navigation, Side};
+use egui::Pos2;
+
+use super::navigation::Navigation;
 use super::state::EditorState;
-use super::view_state::{Picture, PointerActivity, Through, ViewSettings};
-use egui::{Pos2, Rect};
-use isolith_field::Shading;
-use isolith_field::debug_view::ViewMode;
-
-/// The number of viewports: the main one and those beside it.
-pub const VIEWS: usize = 4;
-/// The panels of the viewports beside the main one: id, title, and the side from which they look at first.
-pub const SIDES: [(&str, &str, Side); VIEWS - 1] =
-    [("view-2", "View 2", Side::Front), ("view-3", "View 3", Side::Right), ("view-4", "View 4", Side::Top)];
-
-/// What belongs to one viewport.
-struct ViewSlot {
-    navigation: Navigation,
-    through: Option<Through>,
-    shading: Shading,
-    view_mode: ViewMode,
-    rect: Rect,
-    size_px: [u32; 2],
-    picture: Picture,
-    /// Whether it was not shown in this document.
-    is_new: bool,
-}
-
-impl Default for ViewSlot {
-    fn default() -> Self {
-        Self {
-            navigation: Navigation::default(),
-            through: None,
-            shading: Shading::default(),
-            view_mode: ViewMode::Shaded,
-            rect: Rect::NOTHING,
-            size_px: [1, 1],
-            picture: Picture::default(),
-            is_new: true,
-        }
-    }
-}
-
-impl ViewSlot {
-    fn swap(&mut self, state: &mut EditorState) {
-        use std::mem::swap;
-        let view = &mut state.view;
-        swap(&mut self.navigation, &mut view.navigation);
-        swap(&mut self.through, &mut view.through);
-        swap(&mut self.shading, &mut view.shading);
-        swap(&mut self.view_mode, &mut view.view_mode);
-        swap(&mut self.rect, &mut view.rect);
-        swap(&mut self.size_px, &mut view.size_px);
-        swap(&mut self.picture, &mut state.picture);
-    }
-}
-
-/// The viewports.
-#[derive(Default)]
-pub struct SideViews {
-    /// The one whose view is the editor's.
-    active: usize,
-    /// The views of the others.
-    slots: [ViewSlot; VIEWS],
-    /// Which were shown in this frame.
-    shown: [bool; VIEWS],
-}
-
-impl SideViews {
-    /// The viewport whose view is the editor's.
-    pub fn active(&self) -> usize {
-        self.active
-    }
-
-    /// The room of all viewports that wait, none for a single one.
-    pub fn room(&self) -> Option<Rect> {
-        let shown = self.slots.iter().enumerate().filter(|(index, _)| self.shown[*index] && *index != self.active);
-        shown.map(|(_, slot)| slot.rect).reduce(Rect::union)
-    }
-
-    /// Whether more than the main viewport is shown.
-    pub fn is_split(&self) -> bool {
-        self.shown.iter().filter(|shown| **shown).count() > 1
-    }
-}
+use super::view_slots::{SIDES, VIEWS};
+use super::view_state::{Picture, PointerActivity, ViewSettings};
 
 impl EditorState {
     /// Sets the pictures of all viewports.
@@ -101,8 +24,8 @@ impl EditorState {
             return;
         }
         let mut views = std::mem::take(&mut self.views);
-        views.slots[views.active].swap(self);
-        views.slots[index].swap(self);
+        views.slots[views.active].swap(&mut self.view, &mut self.picture);
+        views.slots[index].swap(&mut self.view, &mut self.picture);
         views.active = index;
         (self.view.pointer, self.view.is_navigating) = (PointerActivity::Away, false);
         self.views = views;
@@ -140,7 +63,7 @@ impl EditorState {
             return show(self);
         }
         let mut slot = std::mem::take(&mut self.views.slots[index]);
-        slot.swap(self);
+        slot.swap(&mut self.view, &mut self.picture);
         // What is in progress belongs to the active one.
         let (transforming, pointer_activity) = (self.view.transforming.take(), self.view.pointer);
         let (events, flags) = (
@@ -154,7 +77,7 @@ impl EditorState {
         slot.is_new = self.views.slots[index].is_new;
         (self.view.transforming, self.view.pointer, self.view.modal_events) = (transforming, pointer_activity, events);
         [self.view.wants_box, self.view.wants_lasso, self.view.is_navigating] = flags;
-        slot.swap(self);
+        slot.swap(&mut self.view, &mut self.picture);
         self.views.slots[index] = slot;
         result
     }

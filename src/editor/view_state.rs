@@ -69,9 +69,6 @@ pub struct GridView {
     pub fades: bool,
 }
 
-/// The number of bookmarks.
-pub const BOOKMARKS: usize = 4;
-
 /// A camera that one looks through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through {
@@ -128,8 +125,6 @@ pub struct ViewState {
     pub locks_camera: bool,
     /// Whether its frame shows where action and titles are safe.
     pub show_safe_areas: bool,
-    /// Views to come back to.
-    pub bookmarks: [Option<Navigation>; BOOKMARKS],
     /// The shading of the lit picture.
     pub shading: Shading,
     /// The view mode.
@@ -194,7 +189,6 @@ impl Default for ViewState {
             frame_aspect: 16.0 / 9.0,
             locks_camera: false,
             show_safe_areas: false,
-            bookmarks: [None; BOOKMARKS],
             shading: Shading::default(),
             view_mode: ViewMode::Shaded,
             passes: None,

@@ -13,10 +13,10 @@ use super::hover::Hover;
 use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
 use super::projection::Projection;
-use super::side_views::SIDES;
 use super::state::{EditorState, Request};
 use super::transforms::transform_bar;
 use super::transforms::transform_drag::Following;
+use super::view_slots::SIDES;
 use super::view_state::PointerActivity;
 use super::viewport_click::{click, prepare_menu, select_in_box, select_in_lasso, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
@@ -90,7 +90,7 @@ impl Viewport {
         if self.index == 0 {
             transform_bar::show(state, ui);
         }
-        if state.views.is_split() && state.views.active() == self.index {
+        if state.views.is_split() && state.views.active == self.index {
             let line = egui::Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.7));
             ui.painter().rect_stroke(state.view.rect, 0.0, line, egui::StrokeKind::Inside);
         }

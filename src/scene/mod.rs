@@ -23,6 +23,7 @@ mod attached;
 mod attachment;
 mod axis;
 mod baked;
+mod bookmark;
 pub mod check;
 mod decode_budget;
 mod display;
@@ -64,6 +65,7 @@ pub use animation::{Animation, KeyInterpolation, Keyframe, MovedParts, SAME_TIME
 pub use attached::Attached;
 pub use attachment::{Attachment, Content};
 pub use axis::Axis;
+pub use bookmark::{Bookmark, MAX_BOOKMARKS};
 pub use display::{DisplaySettings, ViewTransform};
 pub use drawn::{Corners, Points, profile_curve, text_profile, tube_curve};
 pub use dynamics::{Dynamic, DynamicKind, DynamicSlot, MAX_DYNAMICS};

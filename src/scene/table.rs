@@ -9,7 +9,8 @@ use glam::DAffine3;
 use super::image_budget::{self, ImageHolders};
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
 use super::{
-    Animation, DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, PackedFiles, SceneError,
+    Animation, Bookmark, DisplaySettings, Environment, MAX_BOOKMARKS, Material, MaterialId, Node, NodeId, NodeKind,
+    PackedFiles, SceneError,
 };
 
 /// A scene.
@@ -31,6 +32,8 @@ pub struct Scene {
     pub display: DisplaySettings,
     /// Its parameters that change with time. Their tracks follow from [`Scene::set_tracks`].
     pub animation: Animation,
+    /// Views to come back to.
+    pub bookmarks: [Option<Bookmark>; MAX_BOOKMARKS],
     /// The files that travel within it.
     pub packed: PackedFiles,
 }
@@ -45,6 +48,7 @@ impl PartialEq for Scene {
             && self.environment == other.environment
             && self.display == other.display
             && self.animation == other.animation
+            && self.bookmarks == other.bookmarks
             && self.packed == other.packed
             && same(&self.materials, &other.materials)
             && same(&self.nodes, &other.nodes)
@@ -69,6 +73,7 @@ impl Scene {
             environment: Environment::default(),
             display: DisplaySettings::default(),
             animation: Animation::default(),
+            bookmarks: [None; MAX_BOOKMARKS],
             packed: PackedFiles::default(),
         }
     }

@@ -73,7 +73,7 @@ fn escape_closes_what_is_beside_the_scene_and_keeps_the_selection() {
     for (command, inside) in [
         (Command::ShowHistory, "Step 0: Begin"),
         (Command::ShowKeys, "What's new"),
-        (Command::ExamineScene, "Scan"),
+        (Command::ExamineScene, "Scan the scene"),
         (Command::Render, "Close the render dialog"),
     ] {
         run(&mut harness, command);

@@ -13,7 +13,9 @@ fn split(harness: &mut Harness<'_, Editor>, count: usize) {
 }
 
 fn rect(harness: &Harness<'_, Editor>, name: &str) -> egui::Rect {
-    harness.get_by_label(name).rect()
+    // Its tab has the same name.
+    let found = harness.get_all_by_label(name).find(|node| node.accesskit_node().role() != Role::Tab);
+    found.unwrap_or_else(|| panic!("no {name}")).rect()
 }
 
 fn over(harness: &mut Harness<'_, Editor>, name: &str) -> Pos2 {

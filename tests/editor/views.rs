@@ -142,4 +142,10 @@ fn bookmarks_bring_views_back() {
     assert!(harness.state().messages().next_back().expect("told").text.contains("empty"));
     press(&mut harness, Modifiers::NONE, Key::F5);
     assert_eq!(harness.state().view().camera, first);
+    let scene = harness.state().document().scene().clone();
+    assert!(scene.bookmarks[0].is_some() && scene.bookmarks[1].is_none());
+    let text = isolith::scene::file::to_json(&scene).unwrap();
+    let again = isolith::scene::file::parse(text.as_bytes(), std::path::Path::new("x")).unwrap();
+    assert_eq!(again.bookmarks[0].map(|view| view.target), scene.bookmarks[0].map(|view| view.target));
+    assert_eq!(undo_all(&mut harness), 1, "the scene keeps it");
 }

@@ -12,9 +12,9 @@ use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::navigation::Side;
 use crate::pass_step::PassStep;
-use crate::view_state::BOOKMARKS;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
+use isolith_scene::MAX_BOOKMARKS as BOOKMARKS;
 
 fn row(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
     CommandInfo::new(Menu::View, command, Icon::from(icon), label, help)

@@ -12,9 +12,9 @@ use super::animation::TrackFile;
 use super::list::at_most;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
-    BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
-    MAX_MODIFIERS, MarchSettings, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object,
-    Operation, PackedFiles, Timeline, whole,
+    BlendOverride, Bookmark, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light,
+    MAX_BOOKMARKS, MAX_DYNAMICS, MAX_MODIFIERS, MarchSettings, Material, MaterialId, MeshNode, ModifierSlot, Node,
+    NodeId, NodeKind, Object, Operation, PackedFiles, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -53,6 +53,9 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// Parameters that change with time.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_TRACKS>")]
     pub tracks: Vec<TrackFile>,
+    /// Views to come back to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_BOOKMARKS>")]
+    pub bookmarks: Vec<Option<Bookmark>>,
     /// Files that travel within the scene: its models, with the buffers and images that these name.
     #[serde(default, skip_serializing_if = "PackedFiles::is_empty")]
     pub packed: PackedFiles,

@@ -278,6 +278,7 @@ impl SceneV1 {
             nodes: self.nodes.into_iter().map(NodeFile::converted).collect(),
             timeline: self.timeline,
             tracks: self.tracks,
+            bookmarks: self.bookmarks,
             packed: self.packed,
         }
     }

@@ -17,7 +17,7 @@ use super::place;
 use super::watch;
 use super::weight::weigh;
 use crate::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
-use crate::{Node, NodeId, Scene, check, decode_budget, whole};
+use crate::{Bookmark, Node, NodeId, Scene, check, decode_budget, whole};
 use isolith_jobs::Task;
 
 /// Reads a scene from the contents of a file; `file` is for messages only.
@@ -120,6 +120,11 @@ fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     let mut tables = tables.map_err(|e| FileError::new(file, e.to_string()))?;
     tables.display = scene.display;
     tables.packed = scene.packed;
+    for (i, bookmark) in scene.bookmarks.into_iter().enumerate() {
+        let checked = bookmark.as_ref().map_or(Ok(()), Bookmark::check);
+        checked.map_err(|reason| FileError::new(file, reason).at(format!("bookmarks[{i}]")))?;
+        tables.bookmarks[i] = bookmark;
+    }
     tables.animation.timeline = scene.timeline;
     animation::add_tracks(&mut tables, scene.tracks, file)?;
     Ok(tables)

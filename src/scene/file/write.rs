@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use super::FileError;
 use super::animation;
 use super::format::{NodeFile, SceneFile, VERSION};
-use crate::{Material, Scene, check};
+use crate::{Bookmark, Material, Scene, check};
 
 /// The text of a scene. Floating-point numbers use the shortest form that reads back as the same number, so reading and
 /// writing again gives the same bytes.
@@ -28,6 +28,10 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
             .map_err(|f| FileError::from_fault(file, &format!("nodes[{i}]"), f).of_node(&node.name, node.id))?;
     }
     animation::check(scene, file)?;
+    for (i, bookmark) in scene.bookmarks.iter().enumerate() {
+        let checked = bookmark.as_ref().map_or(Ok(()), Bookmark::check);
+        checked.map_err(|reason| FileError::new(file, reason).at(format!("bookmarks[{i}]")))?;
+    }
     let failed = |e: serde_json::Error| FileError::new(file, e.to_string());
     let table = SceneFile {
         schema: None,
@@ -39,6 +43,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),
         timeline: scene.animation.timeline,
         tracks: animation::written(&scene.animation),
+        bookmarks: bookmarks(scene),
         packed: scene.packed.clone(),
     };
     let mut out = Vec::new();
@@ -46,6 +51,12 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     written.map_err(failed)?;
     out.push(b'\n');
     String::from_utf8(out).map_err(|e| FileError::new(file, e.to_string()))
+}
+
+/// The views up to the last that is kept.
+fn bookmarks(scene: &Scene) -> Vec<Option<Bookmark>> {
+    let count = scene.bookmarks.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+    scene.bookmarks[..count].to_vec()
 }
 
 /// A material as files hold it: without the values that a new one has.
