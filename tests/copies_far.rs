@@ -59,7 +59,7 @@ fn visited(every: bool, instancer: &FlatInstancer, cone: CopyCone) -> (Vec<[i32;
 
 #[test]
 fn walks_past_empty_blocks_visit_the_same_copies() {
-    let mut sum = [0, 0];
+    let mut sum = [0; 3];
     for (name, scene) in masked() {
         let flat = flatten(&scene, 1.7).expect("within the limits");
         let instancer = &flat.instancers[0];
@@ -79,10 +79,11 @@ fn walks_past_empty_blocks_visit_the_same_copies() {
             met += every.len();
         }
         println!("{name}: {few} of {all} cells and blocks, {met} copies met");
-        assert!(met > 20 && few * 20 <= all * 21, "{name}: {few} of {all}, {met} met");
-        sum = [sum[0] + few, sum[1] + all];
+        // Blocks that are tried in vain.
+        assert!(few * 100 <= all * 115, "{name}: {few} of {all}");
+        sum = [sum[0] + few, sum[1] + all, sum[2] + met as u64];
     }
-    assert!(sum[0] * 10 < sum[1] * 9, "{sum:?}");
+    assert!(sum[0] * 10 < sum[1] * 9 && sum[2] > 200, "{sum:?}");
 }
 
 /// What the rays of a camera's picture look at, up to the first sphere that they meet, per pixel.
