@@ -53,7 +53,7 @@ impl Bookmark {
             return Err(format!("its distance must be between {:e} and {:e} m", DISTANCES[0], DISTANCES[1]));
         }
         let length = self.rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
-        if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+        if !length.is_finite() || (length - 1.0).abs() > UNIT_TOLERANCE {
             return Err("its rotation must be a unit quaternion".into());
         }
         let is_angle = self.fov_y > 0.0 && self.fov_y < std::f64::consts::PI;
