@@ -1,6 +1,10 @@
 // The cones of occlusion. Counterpart of `src/field/light/occlusion.rs`.
 
 const OCCLUSION_CONES: u32 = 6u;
+// Rays of a sample of a still picture; each has a byte behind those of the cones.
+const OCCLUSION_RAYS: u32 = 2u;
+// In the byte of a ray, which holds its cone: nothing is in its way.
+const OCCLUSION_FREE: u32 = 8u;
 
 // Two vectors that form an orthonormal basis with a unit vector (Duff et al., "Building an
 // Orthonormal Basis, Revisited", 2017).
@@ -19,7 +23,7 @@ fn occlusion_up(normal: vec3f) -> vec3f {
 // How much a ray in the part of a cone is expected to tell: the deviation of what it finds, if this share is
 // visible. Never 0, for cones err.
 fn occlusion_doubt(share: f32) -> f32 {
-    return max(sqrt(max(share * (1.0 - share), 0.0)), 0.1);
+    return max(sqrt(max(share * (1.0 - share), 0.0)), 0.2);
 }
 
 // A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit

@@ -22,6 +22,8 @@ use isolith_geometry::Ray;
 
 /// Number of cones.
 pub const OCCLUSION_CONES: u32 = 6;
+/// Rays of a sample of a still picture.
+pub const OCCLUSION_RAYS: u32 = 2;
 /// Sine and tangent of their half angle.
 const OCCLUSION_SINE: f64 = 0.5;
 const OCCLUSION_TANGENT: f64 = 0.577_350_269;
@@ -111,7 +113,7 @@ pub fn occlusion_shares(
 /// How much a ray in the part of a cone is expected to tell: the deviation of what it finds, if this share is visible.
 /// Never 0, for cones err.
 fn occlusion_doubt(share: f64) -> f64 {
-    (share * (1.0 - share)).sqrt().max(0.1)
+    (share * (1.0 - share)).sqrt().max(0.2)
 }
 
 /// A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit square. The
