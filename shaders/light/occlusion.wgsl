@@ -1,7 +1,12 @@
 // The cones of occlusion. Counterpart of `src/field/light/occlusion.rs`.
 
 const OCCLUSION_CONES: u32 = 6u;
-const OCCLUSION_WORTH: f32 = 12.0;
+// What the cones are worth, in samples of rays.
+const OCCLUSION_WORTH: f32 = 8.0;
+// Rays of a sample of a still picture; each has a byte behind those of the cones.
+const OCCLUSION_RAYS: u32 = 2u;
+// In the byte of a ray, which holds its cone: nothing is in its way.
+const OCCLUSION_FREE: u32 = 8u;
 
 // Two vectors that form an orthonormal basis with a unit vector (Duff et al., "Building an
 // Orthonormal Basis, Revisited", 2017).
@@ -20,11 +25,11 @@ fn occlusion_up(normal: vec3f) -> vec3f {
 // How much a ray in the part of a cone is expected to tell: the deviation of what it finds, if this share is
 // visible. Never 0, for cones err.
 fn occlusion_doubt(share: f32) -> f32 {
-    return max(sqrt(max(share * (1.0 - share), 0.0)), 0.1);
+    return max(sqrt(max(share * (1.0 - share), 0.0)), 0.2);
 }
 
-// How much n rays together tell, in rays: those of few samples are believed little and have little noise,
-// those of many all, without bias.
+// How much the rays of n samples together tell, in samples: those of few are believed little and have little
+// noise, those of many all, without bias.
 fn occlusion_believed(n: f32) -> f32 {
     return n * n * n / (n * n + OCCLUSION_WORTH * OCCLUSION_WORTH);
 }

@@ -2,9 +2,10 @@
 
 #include "light/occlusion.wgsl"
 
-// Mean free direction, and visible share of the environment. In a sample of a still picture a ray corrects
-// the cone in whose part of the hemisphere it lies: the mean of the samples is that of the rays, with less
-// noise (a control variate, sampled where it is in doubt), and the first of many count less. A single share may be below 0 or above 1.
+// Mean free direction, and visible share of the environment. In a sample of a still picture rays correct
+// the cones in whose parts of the hemisphere they lie: the mean of the samples is that of the rays, with
+// less noise (a control variate, sampled where it is in doubt). The first of many samples count less. A
+// single share may be below 0 or above 1.
 fn occlusion_at(pixel: vec2u, normal: vec3f) -> vec4f {
     let slot = (shadow_settings.lights + 3u) / 4u * 4u;
     var sum = vec4f(0.0);
@@ -17,9 +18,13 @@ fn occlusion_at(pixel: vec2u, normal: vec3f) -> vec4f {
     }
     let free = select(normal, normalize(sum.xyz), dot(sum.xyz, sum.xyz) > 1e-8);
     let seen = select(vec4f(normal, 1.0), vec4f(free, sum.w), shadow_settings.cones > 0u);
-    let cone_of_ray = u32(round(255.0 * shares_byte(pixel, slot + OCCLUSION_CONES + 1u)));
-    let of_cone = shares_byte(pixel, slot + cone_of_ray);
-    let off = (shares_byte(pixel, slot + OCCLUSION_CONES) - of_cone) * doubt / occlusion_doubt(of_cone);
+    var off = 0.0;
+    for (var i = 0u; i < OCCLUSION_RAYS; i += 1u) {
+        let stored = u32(round(255.0 * shares_byte(pixel, slot + OCCLUSION_CONES + i)));
+        let of_cone = shares_byte(pixel, slot + stored % OCCLUSION_FREE);
+        let found = select(0.0, 1.0, stored >= OCCLUSION_FREE);
+        off += (found - of_cone) * doubt / occlusion_doubt(of_cone) / f32(OCCLUSION_RAYS);
+    }
     let has_ray = shadow_settings.sample > 0u && shadow_settings.cones > 0u;
     let visible = seen.w + select(0.0, off * occlusion_trust(shadow_settings.sample), has_ray);
     let bent = normal + (seen.xyz * seen.w - normal) * shadow_settings.occlusion_strength;

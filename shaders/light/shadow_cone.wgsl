@@ -12,20 +12,21 @@ struct ShadowPoint {
     normal: vec3f,
 }
 
-// Number of rays to the environment: one in each sample after the first.
+// Number of rays to the environment in a sample; the first sample has none.
 fn shadow_ambient_rays() -> u32 {
-    return select(0u, 1u, settings.cones > 0u && settings.sample > 0u);
+    return select(0u, OCCLUSION_RAYS, settings.cones > 0u && settings.sample > 0u);
 }
 
-// Where the share of a task is stored: of a light, or of the ray to the environment behind the cones.
+// Where the share of a task is stored: of a light, or of a ray to the environment behind the cones.
 fn shadow_slot(task: u32) -> u32 {
-    return select(task, (settings.lights + 3u) / 4u * 4u + OCCLUSION_CONES, task == settings.lights);
+    let of_ray = (settings.lights + 3u) / 4u * 4u + OCCLUSION_CONES + task - settings.lights;
+    return select(task, of_ray, task >= settings.lights);
 }
 
 // Begins the march of a task.
 fn shadow_march_begin(task: u32, is_ray: bool) -> ConeMarch {
     var march = cone_march_begin();
-    march.state = select(0u, CONE_RAY, is_ray || task == settings.lights);
+    march.state = select(0u, CONE_RAY, is_ray || task >= settings.lights);
     return march;
 }
 
@@ -38,7 +39,7 @@ struct AmbientRay {
 }
 
 // Rays go to the part of a cone as often as it weighs and is in doubt.
-fn shadow_ambient_direction(point: ShadowPoint) -> AmbientRay {
+fn shadow_ambient_direction(point: ShadowPoint, task: u32) -> AmbientRay {
     let first = (point.pixel.y * view.width + point.pixel.x) * settings.stride;
     let slot = shadow_slot(settings.lights) - OCCLUSION_CONES;
     var parts: array<f32, OCCLUSION_CONES>;
@@ -49,7 +50,7 @@ fn shadow_ambient_direction(point: ShadowPoint) -> AmbientRay {
         parts[i] = occlusion_cone(point.normal, i).w * occlusion_doubt(share);
         all += parts[i];
     }
-    let unit = sample_unit(point.pixel, settings.lights, settings.sample);
+    let unit = sample_unit(point.pixel, task, settings.sample);
     var left = unit.x * all;
     var chosen = OCCLUSION_CONES;
     var within = 0.0;
@@ -62,17 +63,19 @@ fn shadow_ambient_direction(point: ShadowPoint) -> AmbientRay {
     return AmbientRay(occlusion_place(chosen, vec2f(clamp(within, 0.0, 1.0), unit.y)), chosen);
 }
 
-// Stores the share of a task; of the ray to the environment, also which cone it was about.
+// Stores the share of a task; of a ray to the environment, which cone it was about and whether it is free.
 fn shadow_store_task(first: u32, point: ShadowPoint, task: u32, share: f32) {
-    shadow_store(first, shadow_slot(task), share);
-    if task == settings.lights {
-        shadow_store(first, shadow_slot(task) + 1u, f32(shadow_ambient_direction(point).cone) / 255.0);
+    var stored = share;
+    if task >= settings.lights {
+        let found = select(0u, OCCLUSION_FREE, share > 0.5);
+        stored = f32(shadow_ambient_direction(point, task).cone + found) / 255.0;
     }
+    shadow_store(first, shadow_slot(task), stored);
 }
 
 // A ray of occlusion.
-fn shadow_ambient_ray(point: ShadowPoint) -> SceneCone {
-    let place = shadow_ambient_direction(point).place;
+fn shadow_ambient_ray(point: ShadowPoint, task: u32) -> SceneCone {
+    let place = shadow_ambient_direction(point, task).place;
     let height = sqrt(max(1.0 - dot(place, place), 1e-6));
     let around = occlusion_right(point.normal) * place.x + occlusion_up(point.normal) * place.y;
     let along = normalize(around + point.normal * height);
@@ -83,8 +86,8 @@ fn shadow_ambient_ray(point: ShadowPoint) -> SceneCone {
 
 // The cone to a light; it ends at 0 if there is nothing to do. `is_ray`: a ray to a point of it.
 fn shadow_cone(point: ShadowPoint, task: u32, is_ray: bool) -> SceneCone {
-    if task == settings.lights {
-        return shadow_ambient_ray(point);
+    if task >= settings.lights {
+        return shadow_ambient_ray(point, task);
     }
     let light = lights[task];
     let toward = light_toward(light, point.position);

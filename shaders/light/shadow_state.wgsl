@@ -56,8 +56,6 @@ fn shadow_clear(first: u32) {
     for (var i = 0u; i < (settings.lights + 3u) / 4u; i += 1u) {
         shares[first + i] = 0xffffffffu;
     }
-    // Without occlusion there is a light.
-    shadow_store(first, select(0u, shadow_slot(settings.lights), settings.cones > 0u), 1.0);
 }
 
 // The six cones of occlusion.

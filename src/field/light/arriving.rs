@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::occlusion::{AmbientRay, Occlusion, occlusion_shares, occlusion_trust};
+use super::occlusion::{AmbientRay, OCCLUSION_RAYS, Occlusion, occlusion_shares, occlusion_trust};
 use super::shadow::{
     ShadowCone, ShadowProof, cone_fineness, light_extent, light_is_seen, light_sample, light_toward, shadow_share,
     unit_sample,
@@ -80,13 +80,16 @@ impl Arriving {
                 point.normal.lerp(bent * visibility, shadowing.occlusion_strength).normalize_or(point.normal);
             let mut visible = visibility;
             if point.sample > 0 {
-                let unit = unit_sample(point.pixel, shadowed, point.sample);
-                let AmbientRay { direction, shares } = AmbientRay::new(point.normal, &shares, unit);
-                let ray = Ray { origin: start(point, direction), direction };
-                let limits = RayLimits { near: 0.0, far: radius };
-                let is_free = evaluator.ray(&ray, limits)?.is_none()
-                    && !mesh_rays_blocked(evaluator.flat(), meshes, &ray, 0.0, radius);
-                visible += (shares[usize::from(is_free)] - visible) * occlusion_trust(point.sample);
+                let mut of_rays = 0.0;
+                for task in shadowed..shadowed + OCCLUSION_RAYS {
+                    let unit = unit_sample(point.pixel, task, point.sample);
+                    let AmbientRay { direction, shares } = AmbientRay::new(point.normal, &shares, unit);
+                    let ray = Ray { origin: start(point, direction), direction };
+                    let is_free = evaluator.ray(&ray, RayLimits { near: 0.0, far: radius })?.is_none()
+                        && !mesh_rays_blocked(evaluator.flat(), meshes, &ray, 0.0, radius);
+                    of_rays += shares[usize::from(is_free)] / f64::from(OCCLUSION_RAYS);
+                }
+                visible += (of_rays - visible) * occlusion_trust(point.sample);
             }
             arriving.visibility = 1.0 + (visible - 1.0) * shadowing.occlusion_strength;
         }

@@ -22,6 +22,8 @@ use isolith_geometry::Ray;
 
 /// Number of cones.
 pub const OCCLUSION_CONES: u32 = 6;
+/// Rays of a sample of a still picture.
+pub const OCCLUSION_RAYS: u32 = 2;
 /// Sine and tangent of their half angle.
 const OCCLUSION_SINE: f64 = 0.5;
 const OCCLUSION_TANGENT: f64 = 0.577_350_269;
@@ -111,7 +113,7 @@ pub fn occlusion_shares(
 /// How much a ray in the part of a cone is expected to tell: the deviation of what it finds, if this share is visible.
 /// Never 0, for cones err.
 fn occlusion_doubt(share: f64) -> f64 {
-    (share * (1.0 - share)).sqrt().max(0.1)
+    (share * (1.0 - share)).sqrt().max(0.2)
 }
 
 /// A point of the unit disc, above which lies the part of a cone in the hemisphere; from one of the unit square. The
@@ -136,11 +138,11 @@ pub struct AmbientRay {
     pub shares: [f64; 2],
 }
 
-/// What the cones of occlusion are worth, in rays: after as many, both count the same.
-const OCCLUSION_WORTH: f64 = 12.0;
+/// What the cones of occlusion are worth, in samples of rays: after as many, both count the same.
+const OCCLUSION_WORTH: f64 = 8.0;
 
-/// How much n rays together tell, in rays: those of few samples are believed little and have little noise, those of many
-/// all, without bias.
+/// How much the rays of n samples together tell, in samples: those of few are believed little and have little noise,
+/// those of many all, without bias.
 fn occlusion_believed(n: f64) -> f64 {
     n.powi(3) / (n * n + OCCLUSION_WORTH * OCCLUSION_WORTH)
 }
@@ -286,7 +288,7 @@ mod tests {
     fn few_samples_trust_cones_and_many_trust_rays() {
         let mean = |samples: u32| (0..samples).map(occlusion_trust).sum::<f64>() / f64::from(samples);
         assert_eq!(mean(1), 0.0, "the first sample has no ray");
-        assert!(mean(3) < 0.15 && (0.5..0.7).contains(&mean(17)) && mean(257) > 0.99, "{} {}", mean(3), mean(17));
+        assert!(mean(3) < 0.1 && (0.7..0.8).contains(&mean(17)) && mean(257) > 0.99, "{} {}", mean(3), mean(17));
         assert!((1..300).all(|sample| (0.0..1.2).contains(&occlusion_trust(sample))));
     }
 

@@ -383,7 +383,7 @@ mod tests {
     use crate::resources::buffers::DataTexture;
     use crate::resources::hierarchy::COPIES_LINK;
     use crate::resources::shadows::{SHADOW_COPIES_WORDS, SHADOW_WORDS};
-    use isolith_field::light::occlusion::OCCLUSION_CONES;
+    use isolith_field::light::occlusion::{OCCLUSION_CONES, OCCLUSION_RAYS};
     use isolith_field::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
     use isolith_wgsl::assemble_plain;
 
@@ -417,6 +417,7 @@ mod tests {
             ("light/shadow_settings.wgsl", "SHADOW_COPIES_WORDS", SHADOW_COPIES_WORDS as u32),
             ("scene/hierarchy.wgsl", "COPIES_LINK", COPIES_LINK),
             ("light/occlusion.wgsl", "OCCLUSION_CONES", OCCLUSION_CONES),
+            ("light/occlusion.wgsl", "OCCLUSION_RAYS", OCCLUSION_RAYS),
             ("light/light_tiles.wgsl", "LIGHT_TILE", LIGHT_TILE),
             ("common/counts.wgsl", "COMPONENT_COUNTS", COMPONENT_COUNTS as u32),
             ("common/counts.wgsl", "PIXEL_COUNTS", PIXEL_COUNTS as u32),

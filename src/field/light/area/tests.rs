@@ -205,7 +205,7 @@ fn the_chart_of_highlights_has_no_hole() {
     // Half angles in degrees.
     const SIZES: [f64; 5] = [1.0, 4.0, 12.0, 30.0, 50.0];
     let mut random = Random(3);
-    for (kind, most) in [(GpuLight::POINT, 0.09), (GpuLight::RECTANGLE, 0.09)] {
+    for (kind, most) in [(GpuLight::POINT, 0.12), (GpuLight::RECTANGLE, 0.12)] {
         for roughness in ROUGHNESS {
             let material = SurfaceMaterial { roughness, ..SurfaceMaterial::default() };
             let row = SIZES.map(|size| {
