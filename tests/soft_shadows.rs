@@ -150,7 +150,7 @@ fn in_white_light() -> BenchScene {
     let mut white = Scene::new();
     let background = EnvironmentKind::Color { color: [1.0; 3] };
     let shadowing = Shadowing { shadows: false, occlusion: true, occlusion_strength: 1.0, ..Shadowing::default() };
-    white.set_environment(Environment { background, shadowing, ..Environment::default() }).unwrap();
+    white.set_environment(Environment { background, shadowing }).unwrap();
     let lit = flatten(&white, 0.0).unwrap();
     (scene.flat.environment, scene.flat.environment_map) = (lit.environment, lit.environment_map);
     scene

@@ -88,13 +88,13 @@ fn copy_path(scene: &Scene, node: NodeId, copy: PickedCopy) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::{Instancer, Node, NodeKind, Object, Shape};
+    use isolith_scene::{Node, NodeKind, Object, Shape};
 
     #[test]
     fn a_copy_is_named_with_its_cell_behind_its_instancer() {
         let mut scene = Scene::new();
         let material = scene.materials()[0].id;
-        let copies = NodeKind::Instancer(Box::new(Instancer::default()));
+        let copies = NodeKind::Instancer(Box::default());
         let instancer = scene.insert(None, 0, Node::new("Forest", copies)).expect("room");
         let tree = NodeKind::Object(Object { shape: Shape::Sphere { radius: 1.0 }, material });
         let tree = scene.insert(Some(instancer), 0, Node::new("Fir", tree)).expect("room");

@@ -219,6 +219,7 @@ impl ModelFields {
     }
 
     /// Puts together what was made. Returns whether anything is new.
+    #[allow(clippy::mutable_key_type, reason = "the hash of a group is that of its content, made once")]
     fn assemble(&mut self, wanted: &[BrickKey], scene: &Scene) -> bool {
         let mut chains: Vec<Chain> = Vec::new();
         for key in wanted {
