@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use image::{Rgba, RgbaImage};
-use isolith::field::{GBuffer, flatten};
+use isolith::field::GBuffer;
 use isolith::render::{EvalStrategy, TracedParts};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
 
@@ -72,9 +72,10 @@ const IN_PASSES: &str = "terrain";
 /// The picture of [`IN_PASSES`] after a number of passes over its parts, `side` by `side` pixels.
 fn after_passes(passes: u32, side: u32) -> GBuffer {
     let scene = scenes().find(|scene| scene.name == IN_PASSES).expect("it is shipped");
-    shared().renderer.set_traced(TracedParts { passes: Some(passes), ..TracedParts::default() });
-    let picture = scene.render(side, EvalStrategy::Interpreter);
-    shared().renderer.set_traced(TracedParts::default());
+    let renderer = &mut shared().renderer;
+    renderer.set_traced(TracedParts { passes: Some(passes), ..TracedParts::default() });
+    let picture = scene.render_on(renderer, side, EvalStrategy::Interpreter);
+    renderer.set_traced(TracedParts::default());
     picture
 }
 
@@ -113,8 +114,7 @@ fn moved_on() -> impl Iterator<Item = BenchScene> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     MOVING.into_iter().map(move |name| {
         let scene = file::load(&folder.join(format!("{name}.json"))).expect("it is shipped");
-        let flat = flatten(&scene, LATER).expect("within the limits");
-        BenchScene { flat, ..BenchScene::new(&format!("{name}-later"), &scene, Some(folder.clone())) }
+        BenchScene::at(&format!("{name}-later"), &scene, LATER, Some(folder.clone()))
     })
 }
 

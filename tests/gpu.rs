@@ -41,7 +41,12 @@ pub struct BenchScene {
 impl BenchScene {
     /// A scene without a file, in its default view, for a square picture.
     pub fn new(name: &str, scene: &Scene, folder: Option<PathBuf>) -> Self {
-        let prepared = PreparedScene::of(scene, 0.0, folder, &Task::new("Preparing"));
+        Self::at(name, scene, 0.0, folder)
+    }
+
+    /// The same at a moment in seconds.
+    pub fn at(name: &str, scene: &Scene, time: f64, folder: Option<PathBuf>) -> Self {
+        let prepared = PreparedScene::of(scene, time, folder, &Task::new("Preparing"));
         let prepared = prepared.unwrap_or_else(|error| panic!("{name}: {error:?}"));
         let mut prepared = prepared.expect("nobody cancels");
         assert!(prepared.warnings_of_fields().is_empty(), "{name}: {:?}", prepared.warnings_of_fields());
@@ -54,7 +59,11 @@ impl BenchScene {
 
     /// Draws it on the shared device.
     pub fn render(&self, side: u32, strategy: EvalStrategy) -> GBuffer {
-        let renderer = &mut shared().renderer;
+        self.render_on(&mut shared().renderer, side, strategy)
+    }
+
+    /// Draws it by this renderer. Who changes its settings holds it until they are as before.
+    pub fn render_on(&self, renderer: &mut Renderer, side: u32, strategy: EvalStrategy) -> GBuffer {
         renderer.set_strategy(strategy);
         let picture = renderer.render(&self.flat, &self.meshes, &self.camera, [side, side], &mut |_| true);
         let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", self.name));

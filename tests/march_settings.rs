@@ -149,12 +149,13 @@ fn the_order_of_parts_changes_the_passes_and_no_pixel() {
 /// The depths after each number of passes, from none to all.
 fn after_passes(scene: &BenchScene) -> Vec<Vec<f32>> {
     let count = scene.flat.component_passes(scene.camera.position).len() as u32;
+    let renderer = &mut shared().renderer;
     let depths = (0..=count).map(|passes| {
-        shared().renderer.set_traced(TracedParts { passes: Some(passes), ..TracedParts::default() });
-        scene.render(SIDE, EvalStrategy::Tape).depth
+        renderer.set_traced(TracedParts { passes: Some(passes), ..TracedParts::default() });
+        scene.render_on(renderer, SIDE, EvalStrategy::Tape).depth
     });
     let all = depths.collect();
-    shared().renderer.set_traced(TracedParts::default());
+    renderer.set_traced(TracedParts::default());
     all
 }
 

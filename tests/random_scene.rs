@@ -98,6 +98,7 @@ impl Random {
             let value = match shape.values().swap_remove(i) {
                 ParamValue::Scalar(_) => ParamValue::Scalar(self.number(&param.limits)),
                 ParamValue::Vector(_) => ParamValue::Vector(self.numbers(&param.limits).into()),
+                ParamValue::Flag(_) if kind == *model => ParamValue::Flag(self.0 >> 58 & 1 == 1),
                 ParamValue::Flag(_) => ParamValue::Flag(self.once_in(2)),
                 ParamValue::Text(_) => ParamValue::Text(self.pick(&["", "a\nb", "\"ß\" {7}"]).to_owned()),
                 ParamValue::File(file) if file.endings().contains(&"png") && self.once_in(2) => {
@@ -212,7 +213,8 @@ impl Random {
                     near,
                     far,
                     aperture: self.number(&limits::APERTURE),
-                    shutter: self.number(&limits::SHUTTER),
+                    // By a copy of the generator, so that what follows is what it was.
+                    shutter: Self(self.0).number(&limits::SHUTTER),
                     focus_distance: self.number(&limits::CLIP),
                 })
             }

@@ -271,7 +271,7 @@ fn tapes_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     assert_eq!(renderer.uploaded(), uploaded_once, "what has not changed is not uploaded");
 }
 
-/// Passes of every picture. The others are for meshes, view modes and marks.
+/// Passes of every picture. The others are for meshes, many lights, view modes and marks.
 const ALWAYS: [&str; 5] = ["mesh", "cone", "trace", "surface", "shade"];
 
 #[test]
@@ -289,7 +289,7 @@ fn each_pass_has_a_row_with_its_time() {
         return;
     }
     let rows = renderer.timings().expect("the device has a clock");
-    assert_eq!(rows.len(), ALWAYS.len() + 5, "{rows:?}");
+    assert_eq!(rows.len(), ALWAYS.len() + 6, "{rows:?}");
     assert!(rows.iter().all(|row| (row.runs > 0) == ALWAYS.contains(&row.label)), "{rows:?}");
     let sum: f64 = rows.iter().map(|row| row.seconds).sum();
     assert!(sum > 0.0 && sum <= whole, "{sum} of {whole} s: {rows:?}");

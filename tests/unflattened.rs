@@ -87,7 +87,8 @@ fn compare_by_halving(flat: &FlatScene, tree: &SceneField, random: &mut Random) 
 /// Offsets along a line through the surface for the comparison, relative to the size of the component.
 const STEPS: [f64; 6] = [0.0, 1e-4, -1e-4, 3e-3, -3e-3, 0.03];
 
-/// Compares both at these points.
+/// Compares both at these points. What an intersection at the top does not reach is gone from the arrays, which then say
+/// more than the tree, where what is gone is a lower bound.
 fn agree(flat: &FlatScene, tree: &SceneField, component: &Component, points: Vec<DVec3>) -> Result<usize, String> {
     let (center, reach) = around(component);
     // Where a point is in the world is known to the rounding of f64 only: 80 nm at 700 000 km.
@@ -103,7 +104,8 @@ fn agree(flat: &FlatScene, tree: &SceneField, component: &Component, points: Vec
             told += 1;
         }
         let is_near = scene.abs() < NEAR * reach;
-        if tree.is_exact() && is_near && (arrays - scene).abs() > room + 1e-5 * scene.abs() {
+        let is_farther = tree.has_intersections() && arrays > scene && scene > 0.0;
+        if tree.is_exact() && is_near && !is_farther && (arrays - scene).abs() > room + 1e-5 * scene.abs() {
             return Err(format!("at {p} the arrays say {arrays:e}, the scene {scene:e}: off by more than {room:e}"));
         }
     }

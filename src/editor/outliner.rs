@@ -5,7 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use egui::{Color32, Key, Rangef, Rect, RichText, ScrollArea, TextEdit, Ui, vec2};
 use egui_ltreeview::{Action, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState};
-use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
+use egui_material_icons::icons::{
+    ICON_CLOSE, ICON_JOIN_INNER, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
+};
 
 use super::commands::command::Command;
 use super::commands::entries::context_entries;
@@ -415,11 +417,11 @@ impl Rows<'_> {
             });
             let sign = match node.operation {
                 Operation::Add => None,
-                Operation::Subtract => Some("−"),
-                Operation::Intersect => Some("∩"),
+                Operation::Subtract => Some(RichText::new("−")),
+                Operation::Intersect => Some(ICON_JOIN_INNER.rich_text().size(14.0)),
             };
             if let Some(sign) = sign {
-                let sign = ui.label(RichText::new(sign).color(theme::NEGATIVE).strong());
+                let sign = ui.label(sign.color(theme::NEGATIVE).strong());
                 sign.on_hover_text(node.operation.label());
             }
             if let Some(share) = share {

@@ -112,6 +112,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
         for (name, menu) in [
             ("Select", Menu::Select),
             ("Paste only", Menu::PastePart),
+            ("Combine", Menu::Combine),
             ("Align and distribute", Menu::Arrange),
             ("Instancer presets", Menu::Presets),
         ] {

@@ -61,14 +61,14 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     if !node.march.is_usual() && !node.can_move() {
         return Err(Fault::new("march", "only objects, groups and instancers can have settings of their march"));
     }
-    if node.march.end() <= node.march.near {
-        let reason = format!("must be more than the start of {}, or 0, not {}", node.march.near, node.march.far);
-        return Err(Fault::new("march.far", reason));
-    }
     for part in Part::of(node) {
         if let Some(params) = part.params(node) {
             values(params).map_err(|fault| Fault { field: part.field(&fault.field), ..fault })?;
         }
+    }
+    if node.march.end() <= node.march.near {
+        let reason = format!("must be more than the start of {}, or 0, not {}", node.march.near, node.march.far);
+        return Err(Fault::new("march.far", reason));
     }
     let (part, together) = match &node.kind {
         NodeKind::Group(_) => return Ok(()),

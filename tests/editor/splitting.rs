@@ -83,6 +83,8 @@ fn a_view_that_is_closed_gives_its_keys_back_and_another_document_is_seen_anew()
     split(&mut harness, 1);
     assert_eq!(harness.state().active_view(), 0);
     split(&mut harness, 2);
+    // The view under the pointer is the active one.
+    over(&mut harness, "Viewport");
     let before = harness.state().views_beside()[0].1.camera;
     let ctx = harness.ctx.clone();
     harness.state_mut().run(Command::New, &ctx);

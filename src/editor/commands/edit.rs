@@ -54,7 +54,7 @@ fn on_selection(command: Command, icon: MaterialIcon, label: &str, help: &str) -
 }
 
 fn join(operator: Operator, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
-    on_selection(Command::Join(operator), icon, label, help)
+    on_selection(Command::Join(operator), icon, label, help).within(Menu::Combine)
 }
 
 fn history() -> Vec<CommandInfo> {
@@ -155,8 +155,11 @@ fn roles() -> Vec<CommandInfo> {
             .key(NONE, Key::I),
         join(Operator::Difference, ICON_JOIN_LEFT, "Subtract", "Cuts all later ones out of the first of the selection")
             .key(NONE, Key::D),
-        on_selection(Command::ToggleSubtract, ICON_REMOVE_CIRCLE, "Toggle subtract", subtract).key(NONE, Key::N),
-        on_selection(Command::ToggleIntersect, ICON_JOIN_INNER, "Toggle intersect", intersect),
+        on_selection(Command::ToggleSubtract, ICON_REMOVE_CIRCLE, "Toggle subtract", subtract)
+            .key(NONE, Key::N)
+            .within(Menu::Combine)
+            .group(),
+        on_selection(Command::ToggleIntersect, ICON_JOIN_INNER, "Toggle intersect", intersect).within(Menu::Combine),
     ]
 }
 

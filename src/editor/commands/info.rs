@@ -21,6 +21,8 @@ pub enum Menu {
     Edit,
     /// Ways to select; a submenu of Edit.
     Select,
+    /// Operators, and operations of nodes; a submenu of Edit.
+    Combine,
     /// Ready-made settings of instancers; a submenu of Edit.
     Presets,
     /// Parts of a copied node; a submenu of Edit.

@@ -8,12 +8,11 @@ use super::part::{Deformed, Leaf, Link, Part};
 use crate::Join;
 use crate::blends::is_symmetric;
 use crate::eval::BlendParams;
-use crate::modify::is_idle;
 use crate::prepare::PreparedShape;
+use crate::survey::active;
 use isolith_geometry::singular_values;
 use isolith_scene::{
-    Blend, BlendKernel, BlendOverride, Group, Modifier, ModifierSlot, Node, NodeId, NodeKind, Operator, RadiusUnit,
-    Scene, Shape,
+    Blend, BlendKernel, BlendOverride, Group, Modifier, Node, NodeId, NodeKind, Operator, RadiusUnit, Scene, Shape,
 };
 
 /// The reason why a scene cannot be evaluated without flattening.
@@ -49,11 +48,16 @@ impl Builder<'_> {
             return Ok(None);
         }
         // An idle modifier has no space of its own, in which radii of blends would be measured.
-        let is_active = |slot: &&ModifierSlot| slot.enabled && !is_idle(&slot.modifier);
-        let modifiers: Vec<&Modifier> = node.modifiers.iter().filter(is_active).map(|slot| &slot.modifier).collect();
+        let modifiers: Vec<&Modifier> = active(node).collect();
         let found = self.modified(node, &modifiers, &(*parent * node.transform.to_affine()))?;
         // An empty group is the empty set; a group of lights, cameras and meshes is not an operand.
         Ok(found.or_else(|| (!self.is_folder(node)).then_some(Part::Nothing)))
+    }
+
+    /// Whether a modifier of the node, or of a group around it, makes a solid of a point.
+    fn is_thickened(&self, node: &Node) -> bool {
+        active(node).any(Modifier::thickens)
+            || node.parent.and_then(|id| self.scene.node(id)).is_some_and(|parent| self.is_thickened(parent))
     }
 
     /// Whether a group holds lights, cameras or meshes, but no object.
@@ -124,7 +128,9 @@ impl Builder<'_> {
             NodeKind::Object(object) => {
                 let leaf = leaf(&object.shape, outer);
                 let is_blank = object.shape.is_blank(&leaf.prepared.bounds);
-                Ok(Some(if is_blank { Part::Nothing } else { Part::Leaf(leaf) }))
+                let is_point = !object.shape.kind().has_data() && Shape::is_point(&object.shape.bounds());
+                let is_nothing = is_blank || (is_point && !self.is_thickened(node));
+                Ok(Some(if is_nothing { Part::Nothing } else { Part::Leaf(leaf) }))
             }
             NodeKind::Group(group) => self.fold(Some(node.id), group, outer),
             NodeKind::Instancer(_) | NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => Ok(None),

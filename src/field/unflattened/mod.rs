@@ -18,7 +18,7 @@ mod part;
 
 use glam::DVec3;
 
-use isolith_scene::Scene;
+use isolith_scene::{Operation, Scene};
 use part::Part;
 
 pub use build::Unsupported;
@@ -26,6 +26,7 @@ pub use build::Unsupported;
 /// The field of a scene.
 pub struct SceneField {
     whole: Part,
+    has_intersections: bool,
 }
 
 impl SceneField {
@@ -35,13 +36,20 @@ impl SceneField {
     /// A blend depends on values that flattening chooses freely: sizes of bounds, or the field of a deformation away
     /// from its surface.
     pub fn new(scene: &Scene) -> Result<Self, Unsupported> {
-        Ok(Self { whole: build::whole(scene)? })
+        let has_intersections = scene.nodes().iter().any(|node| node.operation == Operation::Intersect);
+        Ok(Self { whole: build::whole(scene)?, has_intersections })
     }
 
     /// The field at a point of the world. Its sign and its zeros are right; where [`Self::is_exact`], its value
     /// follows the operands' formulas. Infinite for an empty scene.
     pub fn value(&self, p: DVec3) -> f64 {
         self.whole.value(p)
+    }
+
+    /// Whether nodes intersect what stands before them. What they cut off wholly is in this tree a lower bound, where
+    /// flattened arrays have nothing.
+    pub fn has_intersections(&self) -> bool {
+        self.has_intersections
     }
 
     /// Whether the tree determines the value itself. Deformations and repetitions may have any field with their

@@ -298,8 +298,8 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
         ["background.type", "background.sky", "background.horizon", "background.ambient"]
     );
     assert_eq!(names(&ModifierSlot::from(ModifierKind::Twist.default_modifier())), ["enabled", "angle"]);
-    let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];
-    assert_eq!(names(&Group::default()), group);
+    let group = "operator blend.kernel blend.radius blend.unit blend.steps width depth share bake";
+    assert_eq!(names(&Group::default()), group.split(' ').collect::<Vec<_>>());
 }
 
 /// A table with parameters that old files do not have.
