@@ -111,7 +111,7 @@ if [ "$scene" = readme ]; then
     shown screenshot Dark 1280x800@1 character.json row 218
     shown light Light 1920x1080@1.5 showcase.json row 170
     shown views Dark 1280x800@1 pawn.json side_by_side
-    shown instancing Dark 1280x800@1 ocean.json row 146
+    shown instancing Dark 1280x800@1 ocean.json row 170
     exit 0
 fi
 
