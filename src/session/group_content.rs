@@ -10,10 +10,11 @@ use isolith_bricks::{BakedField, BrickError, Bricks, ContentHash, ContentKey, Vo
 use isolith_field::eval::surface;
 use isolith_field::flatten;
 use isolith_field::scene_eval::SceneEvaluator;
-use isolith_geometry::Aabb;
-use isolith_geometry::Transform;
+use isolith_geometry::{Aabb, Transform};
 use isolith_jobs::Task;
-use isolith_scene::{BlendOverride, Environment, Group, Material, Node, NodeId, NodeKind, Operation, Scene, file};
+use isolith_scene::{
+    BlendOverride, Environment, Group, Material, Node, NodeId, NodeKind, Operation, Scene, Track, file,
+};
 
 /// Changes with what is made of the same content.
 const MAKER: u64 = 1;
@@ -137,6 +138,7 @@ fn look_of(point: &isolith_field::eval::SurfacePoint) -> VoxelLook {
 struct KnownContent {
     nodes: Vec<Arc<Node>>,
     materials: Vec<Arc<Material>>,
+    tracks: Vec<Arc<Track>>,
     content: Result<Arc<GroupContent>, String>,
 }
 
@@ -147,10 +149,15 @@ impl KnownContent {
         let inside = |a: &Option<Group>| a.map(|group| Group { bake: 0.0, ..group });
         now.len() == self.nodes.len()
             && inside(&group(&now[0])) == inside(&group(&self.nodes[0]))
-            && now[1..].iter().zip(&self.nodes[1..]).all(|(a, b)| Arc::ptr_eq(a, b) || a == b)
-            && scene.materials().len() == self.materials.len()
-            && scene.materials().iter().zip(&self.materials).all(|(a, b)| Arc::ptr_eq(a, b) || a == b)
+            && are_same(&now[1..], &self.nodes[1..])
+            && are_same(scene.materials(), &self.materials)
+            && are_same(scene.animation.tracks(), &self.tracks)
     }
+}
+
+/// Whether both hold the same; what is shared is not compared.
+fn are_same<T: PartialEq>(a: &[Arc<T>], b: &[Arc<T>]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b) || a == b)
 }
 
 /// The contents of the groups to be baked, made anew where one has changed.
@@ -166,13 +173,13 @@ impl GroupContents {
         self.known.retain(|id, _| baked.iter().any(|index| scene.nodes()[*index].id == *id));
         for index in baked {
             let id = scene.nodes()[index].id;
-            let has_keys = !scene.animation.tracks().is_empty();
-            if !has_keys && self.known.get(&id).is_some_and(|known| known.is_current(scene, index)) {
+            if self.known.get(&id).is_some_and(|known| known.is_current(scene, index)) {
                 continue;
             }
             let known = KnownContent {
                 nodes: scene.nodes()[scene.subtree(index)].to_vec(),
                 materials: scene.materials().to_vec(),
+                tracks: scene.animation.tracks().to_vec(),
                 content: GroupContent::of(scene, index).map(Arc::new),
             };
             self.known.insert(id, known);
