@@ -204,3 +204,47 @@ impl GroupContents {
         self.known.is_empty()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use isolith_scene::{
+        KeyInterpolation, Keyframe, MaterialId, Object, ParamOwner, ParamPath, ParamValue, Part, ShapeKind,
+    };
+
+    use super::*;
+
+    /// A baked group with a ball, and a ball beside it; `moving` has keys.
+    fn scene(moving: u64) -> Scene {
+        let mut scene = Scene::new();
+        let group = NodeKind::Group(Group { bake: 32.0, ..Group::UNION });
+        let parent = scene.insert(None, 0, Node::new("Group", group)).unwrap();
+        for parent in [Some(parent), None] {
+            let shape = ShapeKind::Sphere.default_shape();
+            let ball = Node::new("Ball", NodeKind::Object(Object { shape, material: MaterialId(1) }));
+            scene.insert(parent, usize::MAX, ball).unwrap();
+        }
+        let owner = ParamOwner::Node(NodeId(moving), Part::Transform);
+        let path = ParamPath { owner, name: "translation".into(), element: None };
+        let key = |time: f64| Keyframe {
+            time,
+            value: ParamValue::Vector(DVec3::X * time),
+            interpolation: KeyInterpolation::Linear,
+        };
+        scene.set_tracks([Track { path, keys: vec![key(0.0), key(1.0)] }]).unwrap();
+        scene
+    }
+
+    #[test]
+    fn content_is_read_again_only_where_it_changed() {
+        let content = |contents: &GroupContents, scene: &Scene| contents.of(scene).next().expect("a group").2.clone();
+        let (mut contents, mut scene) = (GroupContents::default(), scene(3));
+        contents.follow(&scene);
+        let first = content(&contents, &scene).unwrap();
+        contents.follow(&scene);
+        assert!(Arc::ptr_eq(&first, &content(&contents, &scene).unwrap()), "keys beside it change nothing");
+        // Keys within it are refused as soon as they are there.
+        scene.set_tracks(self::scene(2).animation.tracks().iter().map(|track| Track::clone(track))).unwrap();
+        contents.follow(&scene);
+        assert!(content(&contents, &scene).unwrap_err().contains("has keys"));
+    }
+}
