@@ -3,19 +3,22 @@
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
 mod baked;
+mod detail;
 mod exact;
 mod looks;
 mod making;
 mod shapes;
 
+use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
 use isolith::bricks::{
-    BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, CELL_VOXELS, CodecError, SAMPLE_REACH,
+    BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, COARSER, CodecError, SAMPLE_REACH,
     from_bytes, to_bytes,
 };
-use isolith::mesh::{bricks_key, bricks_of, voxel_for};
+use isolith::mesh::{bricks_key, bricks_of, voxel_for, voxelized};
 use shapes::{Soup, ten};
 
 /// Numbers from 0 to 1, always the same.
@@ -75,11 +78,10 @@ fn errors(bricks: &Bricks, points: &[DVec3]) -> [f64; 3] {
 /// What the bricks say of a point: the distance, or a bound of it with the same sign.
 fn said(bricks: &Bricks, p: DVec3) -> f64 {
     let voxel = ((p - bricks.origin()) / bricks.voxel()).floor().to_array().map(|v| v as u32);
-    match bricks.content(voxel.map(|n| n / BRICK_VOXELS)) {
-        Some(BrickContent::Far(voxels)) => voxels * bricks.voxel(),
-        Some(BrickContent::Near { .. }) => bricks.interpolated(p).unwrap(),
-        None if bricks.side(voxel.map(|n| n / CELL_VOXELS)).unwrap() => -BAND * bricks.voxel(),
-        None => BAND * bricks.voxel(),
+    match bricks.content(voxel.map(|n| n / BRICK_VOXELS)).unwrap() {
+        BrickContent::Empty { is_inside: true } => -BAND * bricks.voxel(),
+        BrickContent::Empty { .. } => BAND * bricks.voxel(),
+        BrickContent::Samples(_) | BrickContent::Coarser => bricks.interpolated(p).unwrap(),
     }
 }
 
@@ -88,12 +90,12 @@ fn all_bricks(bricks: &Bricks) -> impl Iterator<Item = [u32; 3]> {
     (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
 }
 
-fn near(bricks: &Bricks) -> Vec<([u32; 3], Box<[u8; BRICK_VOLUME]>, f64)> {
-    let content = |brick| match bricks.content(brick) {
-        Some(BrickContent::Near { samples, slope }) => Some((brick, samples, slope)),
+fn near(bricks: &Bricks) -> Vec<([u32; 3], Box<[u8; BRICK_VOLUME]>)> {
+    let samples = |brick| match bricks.content(brick) {
+        Some(BrickContent::Samples(samples)) => Some((brick, samples)),
         _ => None,
     };
-    all_bricks(bricks).filter_map(content).collect()
+    all_bricks(bricks).filter_map(samples).collect()
 }
 
 #[test]
@@ -139,39 +141,31 @@ fn signs_are_those_of_the_winding_number() {
 }
 
 #[test]
-fn slopes_hold_for_a_brick_and_its_neighbors() {
+fn neighbors_share_their_faces_and_no_slope_is_steeper_than_told() {
     for (name, soup, _) in ten() {
         let bricks = made(&soup, 64.0);
         let all = near(&bricks);
-        assert!(!all.is_empty(), "{name}");
-        for (brick, samples, slope) in &all {
-            assert!((1.0..1.9).contains(slope), "{name}: a slope of {slope}");
-            assert!(BrickContent::slope(samples) <= slope + 1e-9, "{name}: {brick:?}");
-            for (neighbor, theirs, _) in &all {
-                let step = [0, 1, 2].map(|i| neighbor[i].wrapping_sub(brick[i]) as i32);
-                if step.iter().any(|v| v.abs() > 1) {
-                    continue;
-                }
-                assert!(BrickContent::slope(theirs) <= slope + 1e-9, "{name}: {brick:?} beside {neighbor:?}");
-                // Neighbors on the right share their first samples.
-                if step == [1, 0, 0] {
-                    let face = |of: &[u8; BRICK_VOLUME], x: usize| -> Vec<u8> {
-                        of.iter().skip(x).step_by(BRICK_SAMPLES).copied().collect()
-                    };
-                    assert_eq!(face(samples, BRICK_SAMPLES - 1), face(theirs, 0), "{name}: {brick:?}");
-                }
-            }
+        assert!(!all.is_empty() && (1.0..1.9).contains(&bricks.slope()), "{name}: {}", bricks.slope());
+        let known: HashMap<[u32; 3], &[u8; BRICK_VOLUME]> = all.iter().map(|(brick, own)| (*brick, &**own)).collect();
+        for (brick, samples) in &all {
+            assert!(BrickContent::slope(samples) <= bricks.slope() + 1e-9, "{name}: {brick:?}");
+            // Neighbors on the right share their first samples.
+            let Some(theirs) = known.get(&[brick[0] + 1, brick[1], brick[2]]) else { continue };
+            let face = |of: &[u8; BRICK_VOLUME], x: usize| -> Vec<u8> {
+                of.iter().skip(x).step_by(BRICK_SAMPLES).copied().collect()
+            };
+            assert_eq!(face(samples, BRICK_SAMPLES - 1), face(theirs, 0), "{name}: {brick:?}");
         }
     }
 }
 
-/// Distances at points of bricks: with samples within the slope, the others at least as far as they say.
+/// Distances at points of bricks: with samples within the slope, the others at least as far as the band.
 #[test]
 fn what_bricks_say_is_a_lower_bound() {
     let mut dice = Dice(3);
     for (name, soup, _) in ten() {
         let bricks = made(&soup, 64.0);
-        let voxel = bricks.voxel();
+        let (voxel, slope) = (bricks.voxel(), bricks.slope());
         let (mut far_ones, mut near_ones) = (0, 0);
         let all: Vec<_> = all_bricks(&bricks).filter_map(|brick| Some((brick, bricks.content(brick)?))).collect();
         for _ in 0..300 {
@@ -180,11 +174,11 @@ fn what_bricks_say_is_a_lower_bound() {
             let p = bricks.grid.sample(first) + dice.point() * f64::from(BRICK_VOXELS) * voxel;
             let exact = soup.distance(p) / voxel;
             match content {
-                BrickContent::Far(least) => {
+                BrickContent::Empty { .. } => {
                     far_ones += 1;
-                    assert!(least.abs() >= BAND && least.abs() <= exact + 1e-3, "{name}: {least} for {exact} at {p}");
+                    assert!(exact >= BAND - 1e-3, "{name}: {exact} at {p}");
                 }
-                BrickContent::Near { slope, .. } => {
+                BrickContent::Samples(_) => {
                     near_ones += 1;
                     let value = bricks.interpolated(p).unwrap() / voxel;
                     assert!(value.is_finite() && value.abs() <= SAMPLE_REACH);
@@ -193,26 +187,24 @@ fn what_bricks_say_is_a_lower_bound() {
                         assert!(value.abs() / slope <= exact + 0.9, "{name}: {value} for {exact} at {p}");
                     }
                 }
+                BrickContent::Coarser => unreachable!("there is no coarser level"),
             }
         }
-        assert!(
-            (far_ones > 10 || ["plate", "box"].contains(&name)) && near_ones > 30,
-            "{name}: {far_ones} and {near_ones}"
-        );
+        let has_far_ones = far_ones > 10 || ["plate", "box"].contains(&name);
+        assert!(has_far_ones && near_ones > 30, "{name}: {far_ones} and {near_ones}");
     }
 }
 
 #[test]
-fn cells_without_entries_lie_on_their_side_and_far_from_the_surface() {
+fn bricks_without_samples_lie_on_their_side_and_far_from_the_surface() {
     let mut dice = Dice(4);
     for (name, soup, _) in ten() {
         let bricks = made(&soup, 96.0);
-        let cells = bricks.grid.cells;
         for _ in 0..60 {
-            let cell = cells.map(|n| dice.below(n as usize) as u32);
-            let Some(is_inside) = bricks.side(cell) else { continue };
-            let inner = dice.point() * f64::from(CELL_VOXELS) * bricks.voxel();
-            let p = bricks.grid.corner(cell) + inner;
+            let brick = bricks.grid.bricks().map(|n| dice.below(n as usize) as u32);
+            let Some(BrickContent::Empty { is_inside }) = bricks.content(brick) else { continue };
+            let inner = dice.point() * f64::from(BRICK_VOXELS) * bricks.voxel();
+            let p = bricks.grid.sample(brick.map(|n| n * BRICK_VOXELS)) + inner;
             let exact = soup.distance(p);
             assert!(exact >= (BAND - 0.5) * bricks.voxel(), "{name}: {exact} at {p}");
             assert!(name == "open" || is_inside == soup.is_inside(p), "{name}: {p}");
@@ -231,7 +223,7 @@ fn samples_are_the_distances_of_the_triangles() {
         let all = near(&bricks);
         let mut worst = 0.0_f64;
         for _ in 0..500 {
-            let (brick, samples, _) = &all[dice.below(all.len())];
+            let (brick, samples) = &all[dice.below(all.len())];
             let i = dice.below(BRICK_VOLUME);
             let own = [i % BRICK_SAMPLES, i / BRICK_SAMPLES % BRICK_SAMPLES, i / (BRICK_SAMPLES * BRICK_SAMPLES)];
             let p = bricks.grid.sample([0, 1, 2].map(|a| brick[a] * BRICK_VOXELS + own[a] as u32));
@@ -252,7 +244,7 @@ fn samples_are_the_distances_of_the_triangles() {
 fn bricks_take_few_bytes_and_little_time() {
     let wanted = std::env::var("ISOLITH_MEASURE_BRICKS").ok();
     let is_wanted = |name: &str| wanted.as_ref().is_some_and(|wanted| wanted == "all" || wanted == name);
-    let resolutions: &[f64] = if wanted.is_some() { &[128.0, 256.0, 512.0, 1024.0] } else { &[128.0, 256.0] };
+    let resolutions: &[f64] = if wanted.is_some() { &[128.0, 256.0, 512.0] } else { &[128.0, 256.0] };
     let mut meshes: Vec<(&str, Soup)> = ten().into_iter().map(|(name, soup, _)| (name, soup)).collect();
     if is_wanted("million") {
         meshes.push(("million", Soup::knot(354)));
@@ -263,20 +255,18 @@ fn bricks_take_few_bytes_and_little_time() {
         for &resolution in resolutions {
             let voxel = voxel_for(&mesh.bounds, resolution);
             let started = std::time::Instant::now();
-            let bricks = bricks_of(&mesh, voxel, &mut |_| true).unwrap();
+            let bricks = voxelized(&mesh, voxel, &mut |_| true).unwrap().bricks;
             let seconds = started.elapsed().as_secs_f64();
             let area: f64 = soup.corners().map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum();
-            let bytes = bricks.bytes() as f64 / (area / (voxel * voxel));
-            let looks = bricks.looks.as_ref().map_or(0, isolith::bricks::Looks::bytes);
-            let mib = |bytes: usize| bytes as f64 / f64::from(1 << 20);
+            let all = bricks.levels().map(|level| level.bytes()).sum::<usize>();
+            let bytes = all as f64 / (area / (voxel * voxel));
+            let counts: Vec<usize> = bricks.levels().map(|level| level.count()).collect();
             println!(
-                "| {name} | {} | {resolution} | {} | {:.2} | {bytes:.1} | {:.2} | {seconds:.2} |",
+                "| {name} | {} | {resolution} | {counts:?} | {:.2} | {bytes:.1} | {seconds:.2} |",
                 mesh.triangle_count(),
-                bricks.count(),
-                mib(bricks.bytes()),
-                mib(looks),
+                all as f64 / f64::from(1 << 20),
             );
-            assert!(bytes < 40.0, "{name}: {bytes} bytes for each square voxel");
+            assert!(bytes < 34.0, "{name}: {bytes} bytes for each square voxel");
             assert!(seconds < 30.0 || wanted.is_some(), "{name}: {seconds} s");
         }
     }
@@ -317,7 +307,7 @@ fn looks_are_those_of_the_mesh() {
 fn bricks_survive_as_bytes() {
     let mut mesh = Soup::torus(16).mesh();
     mesh.parts[0].surface.metalness = 0.0;
-    let bricks = bricks_of(&mesh, 0.05, &mut |_| true).unwrap();
+    let bricks = Bricks::clone(&voxelized(&mesh, 0.05, &mut |_| true).unwrap().bricks);
     let key = bricks_key(&mesh, 0.05);
     let bytes = to_bytes(&bricks, key);
     assert!(from_bytes(&bytes, key).unwrap() == bricks);
@@ -330,7 +320,7 @@ fn bricks_survive_as_bytes() {
         from_bytes(&to_bytes(&bricks, key), key).unwrap_err()
     };
     let entries = bricks.grid.cell_count().div_ceil(4);
-    let changes: [&dyn Fn(&mut Bricks); 7] = [
+    let changes: [&dyn Fn(&mut Bricks); 9] = [
         &|b| b.texels[0][0] = 1 << 20,
         &|b| b.texels[entries].fill(u32::MAX),
         &|b| b.first_brick += 1,
@@ -338,6 +328,8 @@ fn bricks_survive_as_bytes() {
         &|b| b.grid.cells = [u32::MAX; 3],
         &|b| b.grid.voxel = f64::NAN,
         &|b| b.looks.as_mut().unwrap().texels[6][0] = u32::MAX,
+        &|b| b.texels[0][0] = COARSER - 1,
+        &|b| b.coarser = Some(Arc::new(Bricks { coarser: None, ..b.clone() })),
     ];
     for (i, change) in changes.into_iter().enumerate() {
         assert!(matches!(broken(change), CodecError::Inconsistent(_)), "change {i}");

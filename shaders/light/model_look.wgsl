@@ -19,7 +19,7 @@ const MODEL_LOOK_LEVEL: u32 = 3u;
 const MODEL_LOOK_CELL: f32 = 14.0;
 const MODEL_LOOK_BRICK: f32 = 7.0;
 // Cells without entries have places from here on.
-const MODEL_LOOK_NOWHERE: u32 = 0xfffffffeu;
+const MODEL_LOOK_NOWHERE: u32 = 0xfffffffdu;
 // What is left to be looked up in coarser levels when it does not change a color any more.
 const MODEL_LOOK_LEAST: f32 = 1.0 / 256.0;
 

@@ -7,53 +7,76 @@ const BRICK_TEXELS: u32 = 32u;
 // Steps of a sample in a voxel, and the greatest distance that samples hold, in voxels.
 const SAMPLE_STEPS: f32 = 32.0;
 const SAMPLE_REACH: f32 = 3.96875;
-// From here on a level fades into the next, in voxels.
-const FADE_START: f32 = 2.0;
-// Places of cells without entries: inside, and one more outside.
+// From here on a level fades into the next, and from there on the next counts alone, in voxels.
+const FADE_START: f32 = 1.5;
+const FADE_END: f32 = 3.0;
+// Places of cells without entries: those of which the next level tells as much, inside, and one more outside.
+const CELL_COARSER: u32 = 0xfffffffdu;
 const CELL_INSIDE: u32 = 0xfffffffeu;
+// Bits of entries of bricks without samples.
+const BRICK_INSIDE: u32 = 0x40000000u;
+const BRICK_COARSER: u32 = 0x20000000u;
+// Stands for the distance by samples where the next level tells as much.
+const TOLD_COARSER: f32 = 1e9;
 const LEVEL_ROWS: u32 = 3u;
 
 fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let head = scene_row(data + 1u);
-    let levels = u32(head.x);
-    var row = data + 4u;
+    let levels = u32(scene_row(data + 1u).x);
     var sum = 0.0;
     var rest = 1.0;
-    var is_inside = false;
+    // Of the first level that tells anything.
+    var sign = 0.0;
+    // What the next level that tells anything has told, and the level behind it.
+    var found = vec3f(0.0);
+    var told = 0u;
     for (var level = 0u; level < levels; level += 1u) {
-        let found = mesh_field_level(p, row, head.y);
-        if level == 0u {
-            is_inside = found.y < 0.0;
+        let row = data + 4u + LEVEL_ROWS * level;
+        if told <= level {
+            found = mesh_field_told(p, data, level, levels);
+            told = u32(found.z);
         }
-        let fade = clamp((abs(found.y) - FADE_START) * (1.0 / (SAMPLE_REACH - FADE_START)), 0.0, 1.0);
+        if sign == 0.0 {
+            sign = select(1.0, -1.0, found.y < 0.0);
+        }
+        let distance = abs(found.y);
+        let scaled = distance * scene_row(row + 2u).y;
+        let fade = clamp((distance / scene_row(row).w - FADE_START) * (1.0 / (FADE_END - FADE_START)), 0.0, 1.0);
         let share = select(fade, 0.0, level + 1u == levels);
-        sum += rest * (1.0 - share) * found.x;
+        sum += rest * (1.0 - share) * sqrt(found.x + scaled * scaled);
         rest *= share;
         if rest == 0.0 {
             break;
         }
-        row += LEVEL_ROWS;
     }
-    // The distance to a box around the surface is a bound, too.
-    let beyond = length(max(abs(p - scene_row(data + 2u).xyz) - scene_row(data + 3u).xyz, vec3f(0.0)));
-    return select(max(sum, beyond), -sum, is_inside);
+    // The distance to a box around the surface is a bound, too. With the factor of the finest level it has about the slope
+    // of the others, so that blends have no edge where it takes over.
+    let beyond = scene_row(data + 6u).y * length(max(abs(p - scene_row(data + 2u).xyz) - scene_row(data + 3u).xyz, vec3f(0.0)));
+    return select(max(sum, beyond), -sum, sign < 0.0);
 }
 
-// A lower bound of the distance by the samples of a level, in meters; and what they tell, in voxels.
-fn mesh_field_level(p: vec3f, row: u32, scale: f32) -> vec2f {
+// What the first level from this one on tells: the square of the distance from its grid, the distance by its samples, in
+// meters, and the number of the level after it.
+fn mesh_field_told(p: vec3f, data: u32, first: u32, levels: u32) -> vec3f {
+    var level = first;
+    var found = vec2f(0.0, TOLD_COARSER);
+    while found.y == TOLD_COARSER && level < levels {
+        found = mesh_field_level(p, data + 4u + LEVEL_ROWS * level);
+        level += 1u;
+    }
+    return vec3f(found, f32(level));
+}
+
+// The square of the distance from the grid of a level, and the distance that its samples tell at the nearest point of the
+// grid, in meters.
+fn mesh_field_level(p: vec3f, row: u32) -> vec2f {
     let place = scene_row(row);
     let size = scene_row(row + 1u);
     let voxel = place.w;
     let at = (p - place.xyz) * (1.0 / voxel);
     let within = clamp(at, vec3f(0.0), size.xyz * CELL_VOXELS);
     let raw = mesh_field_within(within, size, u32(scene_row(row + 2u).x));
-    let value = abs(raw) * voxel * scale;
     let beside = (at - within) * voxel;
-    let beyond = dot(beside, beside);
-    if beyond > 0.0 {
-        return vec2f(sqrt(beyond + value * value), raw);
-    }
-    return vec2f(value, raw);
+    return vec2f(dot(beside, beside), select(raw * voxel, TOLD_COARSER, raw == TOLD_COARSER));
 }
 
 // What samples tell at a point within the grid, both in voxels, from the origin of the grid.
@@ -65,8 +88,8 @@ fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
     let cells = counts.x * counts.y * counts.z;
     let places = bricks_texel(first + index / 4u);
     let place = places[index % 4u];
-    if place >= CELL_INSIDE {
-        return select(SAMPLE_REACH, -SAMPLE_REACH, place == CELL_INSIDE);
+    if place >= CELL_COARSER {
+        return select(select(SAMPLE_REACH, -SAMPLE_REACH, place == CELL_INSIDE), TOLD_COARSER, place == CELL_COARSER);
     }
     let inner = at - vec3f(cell) * CELL_VOXELS;
     let brick = min(vec3u(max(inner, vec3f(0.0)) * (1.0 / BRICK_VOXELS)), vec3u(1u));
@@ -74,7 +97,8 @@ fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
     let entries = bricks_texel(first + (cells + 3u) / 4u + 2u * place + number / 4u);
     let entry = entries[number % 4u];
     if (entry >> 31u) == 0u {
-        return select(SAMPLE_REACH, -SAMPLE_REACH, (entry & 0x40000000u) != 0u);
+        let reach = select(SAMPLE_REACH, -SAMPLE_REACH, entry == BRICK_INSIDE);
+        return select(reach, TOLD_COARSER, entry == BRICK_COARSER);
     }
     let samples = first + first_brick + (entry & 0xffffffu) * BRICK_TEXELS;
     return mesh_field_samples(inner - vec3f(brick) * BRICK_VOXELS, samples);

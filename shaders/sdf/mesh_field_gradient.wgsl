@@ -5,7 +5,7 @@
 const MESH_FIELD_SPREAD: f32 = 0.75;
 
 fn dual_sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> vec4f {
-    let step = MESH_FIELD_SPREAD * scene_row(data + 4u).w;
+    let step = MESH_FIELD_SPREAD * mesh_field_voxel(p, data);
     let x = vec3f(step, 0.0, 0.0);
     let y = vec3f(0.0, step, 0.0);
     let z = vec3f(0.0, 0.0, step);
@@ -17,4 +17,10 @@ fn dual_sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> vec4f {
     let slope = rise / (2.0 * step);
     // Differences over a kink may be a little longer than 1.
     return vec4f(slope / max(length(slope), 1.0), sdf_mesh_field(p, a, b, data));
+}
+
+// The size of the voxels of the finest level that tells anything of a point, in meters.
+fn mesh_field_voxel(p: vec3f, data: u32) -> f32 {
+    let told = u32(mesh_field_told(p, data, 0u, u32(scene_row(data + 1u).x)).z);
+    return scene_row(data + 1u + LEVEL_ROWS * told).w;
 }

@@ -1,6 +1,7 @@
 //! Bricks of a field that is known everywhere.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
@@ -8,10 +9,10 @@ use rayon::prelude::*;
 
 use isolith_geometry::Aabb;
 
-use super::encode::cells;
+use super::encode::{BrickSource, cells};
 use super::{
     BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, Bricks, CELL_BRICKS,
-    CELL_VOXELS, Looks, MAX_BRICK_TEXELS, RESOLUTIONS, VoxelLook, encode, surface_samples,
+    CELL_VOXELS, Looks, VoxelLook, encode, in_levels, surface_samples,
 };
 
 /// Half the diagonal of a brick, in voxels.
@@ -33,39 +34,37 @@ pub struct BakedField<'a> {
 /// Told the share that is done; stops the work by returning false.
 pub type BakeProgress<'a> = &'a (dyn Fn(f32) -> bool + Sync);
 
-/// Bricks of the solid with these distances, in meters. `bounds` hold its surface.
+/// Bricks of the solid with these distances, in meters, in one size of voxels. `bounds` hold its surface.
 ///
 /// # Errors
-/// As [`bake_field`].
+/// As [`bake_levels`].
 pub fn bake(bounds: Aabb, voxel: f64, distance: &(dyn Fn(DVec3) -> f64 + Sync)) -> Result<Bricks, BrickError> {
-    bake_field(&BakedField { bounds, distance: &|p, _| distance(p), look: None }, voxel, &|_| true)
+    bake_field(&BakedField { bounds, distance: &|p, _| distance(p), look: None }, [voxel; 2], None, &|_| true)
 }
 
-/// Bricks of a field, made on all cores.
+/// Bricks of a field in voxels of this size and all coarser ones, made on all cores.
 ///
 /// # Errors
 /// There are too many, the field has no bounds, or `progress` returned false.
-pub fn bake_field(field: &BakedField<'_>, voxel: f64, progress: BakeProgress<'_>) -> Result<Bricks, BrickError> {
-    let bounds = field.bounds;
-    if !(voxel > 0.0 && voxel.is_finite()) {
-        return Err(BrickError::Voxel);
-    }
-    if bounds.is_empty() {
-        return Err(BrickError::Empty);
-    }
-    if !bounds.is_finite() {
-        return Err(BrickError::Endless);
-    }
-    let grid = BrickGrid::around(&bounds, voxel);
-    let least = grid.cell_count().div_ceil(4);
-    if least > MAX_BRICK_TEXELS {
-        return Err(BrickError::TooLarge { texels: least });
-    }
-    // A little more than the limit, for sizes that were rounded.
-    let across = (2.0 * bounds.half()).max_element() / voxel;
-    if across > f64::from(RESOLUTIONS[1]) * 1.001 {
-        return Err(BrickError::TooFine { voxels: across.min(1e18) as u64 });
-    }
+pub fn bake_levels(field: &BakedField<'_>, voxel: f64, progress: BakeProgress<'_>) -> Result<Arc<Bricks>, BrickError> {
+    let mut done = 0.0;
+    in_levels(&field.bounds, voxel, &mut |own, coarser| {
+        // A level takes about four times as long as the next coarser one.
+        let share = 0.75 * (voxel / own).powi(2) as f32;
+        let before = done;
+        done += share;
+        bake_field(field, [own, voxel], coarser, &|own| progress((before + share * own).min(1.0)))
+    })
+}
+
+/// The bricks of one level, with voxels of its own size and of that of the finest level.
+fn bake_field(
+    field: &BakedField<'_>,
+    [voxel, finest]: [f64; 2],
+    coarser: Option<Arc<Bricks>>,
+    progress: BakeProgress<'_>,
+) -> Result<Bricks, BrickError> {
+    let grid = BrickGrid::checked(&field.bounds, voxel)?;
     let value = |p: DVec3| (field.distance)(p, ASKED * voxel);
     let size = grid.cells.map(|n| n + 1);
     let corner_list: Vec<[u32; 3]> = cells(size).collect();
@@ -76,71 +75,86 @@ pub fn bake_field(field: &BakedField<'_>, voxel: f64, progress: BakeProgress<'_>
         cells([2; 3]).any(|[x, y, z]| corner([cell[0] + x, cell[1] + y, cell[2] + z]).abs() < reach)
     };
     let near: Vec<[u32; 3]> = cells(grid.cells).filter(is_near).collect();
-    let known = measured(&grid, &near, &value, progress)?;
-    let content = |brick: &[u32; 3]| known.get(brick).cloned().unwrap_or(BrickContent::Far(BAND));
-    let mut order = Vec::new();
-    let mut bricks = encode(grid, bounds, &mut |at| corner(at), &mut |brick| {
-        let content = content(&brick);
-        if let BrickContent::Near { samples, .. } = &content {
-            order.push((brick, samples.clone()));
-        }
-        Ok(content)
-    })?;
-    if let Some(look) = field.look {
-        bricks.looks = Some(painted(&grid, &order, look));
+    let maker = Maker { field, grid, coarser: coarser.as_deref(), finest, value: &value };
+    let known = maker.measured(&near, progress)?;
+    let brick = |brick: [u32; 3]| known.get(&brick).cloned().unwrap_or(BrickContent::Empty { is_inside: false });
+    let bounds = field.bounds;
+    let source = BrickSource { grid, bounds, coarser: coarser.clone(), corner: &corner, brick: &brick };
+    let (mut bricks, order) = encode(source)?;
+    if field.look.is_some() {
+        let of = |brick: &[u32; 3]| match bricks.content(*brick) {
+            Some(BrickContent::Samples(samples)) => maker.looks(*brick, &samples),
+            _ => ([false; BRICK_VOLUME], Vec::new()),
+        };
+        let all: Vec<([bool; BRICK_VOLUME], Vec<VoxelLook>)> = order.par_iter().map(of).collect();
+        bricks.looks = Some(Looks::new(all.into_iter()));
     }
     Ok(bricks)
 }
 
-/// What is known of the bricks of these cells.
-fn measured(
-    grid: &BrickGrid,
-    near: &[[u32; 3]],
-    value: &(dyn Fn(DVec3) -> f64 + Sync),
-    progress: BakeProgress<'_>,
-) -> Result<HashMap<[u32; 3], BrickContent>, BrickError> {
-    let done = AtomicUsize::new(0);
-    let of_cell = |cell: &[u32; 3]| {
-        let share = done.fetch_add(1, Ordering::Relaxed) as f32 / near.len() as f32;
-        if !progress(share) {
-            return Err(BrickError::Canceled);
+/// What the bricks of a level are made of.
+struct Maker<'a> {
+    field: &'a BakedField<'a>,
+    grid: BrickGrid,
+    coarser: Option<&'a Bricks>,
+    /// The size of the finest voxels.
+    finest: f64,
+    /// The distance at a point, in meters.
+    value: &'a (dyn Fn(DVec3) -> f64 + Sync),
+}
+
+impl Maker<'_> {
+    /// What is known of the bricks of these cells.
+    fn measured(
+        &self,
+        near: &[[u32; 3]],
+        progress: BakeProgress<'_>,
+    ) -> Result<HashMap<[u32; 3], BrickContent>, BrickError> {
+        let done = AtomicUsize::new(0);
+        let of_cell = |cell: &[u32; 3]| {
+            let share = done.fetch_add(1, Ordering::Relaxed) as f32 / near.len() as f32;
+            if !progress(share) {
+                return Err(BrickError::Canceled);
+            }
+            let bricks = cells([CELL_BRICKS; 3]).map(|at| [0, 1, 2].map(|i| cell[i] * CELL_BRICKS + at[i]));
+            Ok(bricks.map(|brick| (brick, self.content(brick))).collect::<Vec<_>>())
+        };
+        let all: Vec<_> = near.par_iter().map(of_cell).collect::<Result<_, BrickError>>()?;
+        Ok(all.into_iter().flatten().collect())
+    }
+
+    fn content(&self, brick: [u32; 3]) -> BrickContent {
+        let Self { grid, value, .. } = self;
+        let away = value(grid.middle(brick)) / grid.voxel;
+        if away.abs() - HALF_DIAGONAL >= BAND {
+            return BrickContent::Empty { is_inside: away < 0.0 };
         }
-        let bricks = cells([CELL_BRICKS; 3]).map(|at| [0, 1, 2].map(|i| cell[i] * CELL_BRICKS + at[i]));
-        Ok(bricks.map(|brick| (brick, content(grid, brick, value))).collect::<Vec<_>>())
-    };
-    let all: Vec<_> = near.par_iter().map(of_cell).collect::<Result<_, BrickError>>()?;
-    Ok(all.into_iter().flatten().collect())
-}
-
-fn content(grid: &BrickGrid, brick: [u32; 3], value: &dyn Fn(DVec3) -> f64) -> BrickContent {
-    let away = value(grid.middle(brick)) / grid.voxel;
-    let least = away.abs() - HALF_DIAGONAL;
-    if least >= BAND {
-        return BrickContent::Far(least.copysign(away));
+        let mut samples = Box::new([0; BRICK_VOLUME]);
+        let mut is_told = self.coarser.is_some();
+        for (sample, p) in samples.iter_mut().zip(self.places(brick)) {
+            let distance = value(p);
+            *sample = BrickContent::sample_byte(distance / grid.voxel);
+            is_told = is_told && self.coarser.is_some_and(|coarser| coarser.tells(p, distance, self.finest));
+        }
+        if is_told && self.is_plain(brick, &samples) { BrickContent::Coarser } else { BrickContent::Samples(samples) }
     }
-    let first = brick.map(|n| n * BRICK_VOXELS);
-    let mut samples = Box::new([0; BRICK_VOLUME]);
-    for (sample, at) in samples.iter_mut().zip(cells([BRICK_SAMPLES as u32; 3])) {
-        let p = grid.sample([0, 1, 2].map(|i| first[i] + at[i]));
-        *sample = BrickContent::sample_byte(value(p) / grid.voxel);
-    }
-    let slope = BrickContent::slope(&samples);
-    BrickContent::Near { samples, slope }
-}
 
-/// The looks of these bricks, which are all with samples, in their order.
-fn painted(
-    grid: &BrickGrid,
-    order: &[([u32; 3], Box<[u8; BRICK_VOLUME]>)],
-    look: &(dyn Fn(DVec3) -> VoxelLook + Sync),
-) -> Looks {
-    let of = |(brick, samples): &([u32; 3], Box<[u8; BRICK_VOLUME]>)| {
+    /// The places of a brick's samples.
+    fn places(&self, brick: [u32; 3]) -> impl Iterator<Item = DVec3> {
+        let (grid, first) = (self.grid, brick.map(|n| n * BRICK_VOXELS));
+        cells([BRICK_SAMPLES as u32; 3]).map(move |at| grid.sample([0, 1, 2].map(|i| first[i] + at[i])))
+    }
+
+    /// The looks of a brick: which samples have some, and these.
+    fn looks(&self, brick: [u32; 3], samples: &[u8; BRICK_VOLUME]) -> ([bool; BRICK_VOLUME], Vec<VoxelLook>) {
         let marks = surface_samples(samples);
-        let first = brick.map(|n| n * BRICK_VOXELS);
-        let places = cells([BRICK_SAMPLES as u32; 3]).zip(marks).filter(|(_, is_marked)| *is_marked);
-        let looks = places.map(|(at, _)| look(grid.sample([0, 1, 2].map(|i| first[i] + at[i]))));
-        (marks, looks.collect())
-    };
-    let all: Vec<([bool; BRICK_VOLUME], Vec<VoxelLook>)> = order.par_iter().map(of).collect();
-    Looks::new(all.into_iter())
+        let places = self.places(brick).zip(marks).filter(|(_, is_marked)| *is_marked);
+        (marks, places.filter_map(|(p, _)| self.field.look.map(|look| look(p))).collect())
+    }
+
+    /// Whether the surface looks the same all over a brick.
+    fn is_plain(&self, brick: [u32; 3], samples: &[u8; BRICK_VOLUME]) -> bool {
+        let (_, looks) = self.looks(brick, samples);
+        looks.windows(2).all(|pair| pair[0].packed() == pair[1].packed())
+    }
 }

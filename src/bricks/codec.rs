@@ -1,17 +1,24 @@
 //! Bricks as bytes. Nothing of them is trusted: what is read back is complete, undamaged, of the expected contents, and
 //! names no texel that is not there.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use isolith_geometry::Aabb;
 
-use super::{BRICK_TEXELS, BrickGrid, Bricks, ContentHash, ContentKey, INSIDE, Looks, MAX_BRICK_TEXELS};
+use super::{
+    BRICK_COARSER, BRICK_INSIDE, BRICK_TEXELS, BrickGrid, Bricks, COARSER, ContentHash, ContentKey, HAS_SAMPLES,
+    INSIDE, LEVEL_RATIO, Looks, MAX_BRICK_TEXELS, MAX_LEVELS,
+};
 
 /// The first bytes of a file of bricks.
 pub const CODEC_MAGIC: [u8; 8] = *b"isobrick";
 /// The version of the layout.
-const VERSION: u32 = 2;
-/// Bytes before the texels.
-const HEADER: usize = 8 + 4 + 4 + 16 + 8 * 10 + 4 * 4 + 3 * 8;
+const VERSION: u32 = 3;
+/// Bytes before the levels: the first bytes, the version, the number of levels, the number of bytes, the key.
+const HEADER: usize = 8 + 4 + 4 + 8 + 16;
+/// Bytes of a level before its texels.
+const LEVEL_HEADER: usize = 8 * 10 + 5 * 4 + 3 * 8;
 /// Bytes behind them.
 const CHECKSUM: usize = 16;
 
@@ -43,25 +50,40 @@ pub enum CodecError {
     Inconsistent(&'static str),
 }
 
-/// Bricks of the contents with this key, as bytes.
+/// Bricks of the contents with this key, and all coarser ones, as bytes.
 pub fn to_bytes(bricks: &Bricks, key: ContentKey) -> Vec<u8> {
-    let looks = bricks.looks.as_ref().map_or(&[][..], |looks| &looks.texels);
-    let mut out = Vec::with_capacity(HEADER + CHECKSUM + 16 * (bricks.texels.len() + looks.len()));
+    let levels = || std::iter::successors(Some(bricks), |level| level.coarser.as_deref());
+    let length = HEADER + CHECKSUM + levels().map(level_bytes).sum::<usize>();
+    let mut out = Vec::with_capacity(length);
     out.extend(CODEC_MAGIC);
     out.extend(VERSION.to_le_bytes());
-    out.extend(u32::from(bricks.looks.is_some()).to_le_bytes());
+    out.extend((levels().count() as u32).to_le_bytes());
+    out.extend((length as u64).to_le_bytes());
     out.extend(key.0.iter().flat_map(|word| word.to_le_bytes()));
-    let Bricks { grid, bounds, .. } = bricks;
-    let points = [grid.origin, bounds.min, bounds.max].into_iter().flat_map(|p| p.to_array());
-    let numbers = points.chain([grid.voxel]);
-    out.extend(numbers.flat_map(f64::to_le_bytes));
-    out.extend(grid.cells.into_iter().chain([bricks.first_brick]).flat_map(u32::to_le_bytes));
-    let first_look = bricks.looks.as_ref().map_or(0, |looks| looks.first_look as usize);
-    out.extend([bricks.texels.len(), looks.len(), first_look].iter().flat_map(|n| (*n as u64).to_le_bytes()));
-    out.extend(bricks.texels.iter().chain(looks).flatten().flat_map(|word| word.to_le_bytes()));
+    levels().for_each(|level| write_level(level, &mut out));
     let sum = checksum(&out);
     out.extend(sum.0.iter().flat_map(|word| word.to_le_bytes()));
     out
+}
+
+fn looks_of(level: &Bricks) -> &[[u32; 4]] {
+    level.looks.as_ref().map_or(&[], |looks| &looks.texels)
+}
+
+fn level_bytes(level: &Bricks) -> usize {
+    LEVEL_HEADER + 16 * (level.texels.len() + looks_of(level).len())
+}
+
+fn write_level(level: &Bricks, out: &mut Vec<u8>) {
+    let Bricks { grid, bounds, .. } = level;
+    let looks = looks_of(level);
+    let points = [grid.origin, bounds.min, bounds.max].into_iter().flat_map(|p| p.to_array());
+    out.extend(points.chain([grid.voxel]).flat_map(f64::to_le_bytes));
+    let words = grid.cells.into_iter().chain([level.first_brick, u32::from(level.looks.is_some())]);
+    out.extend(words.flat_map(u32::to_le_bytes));
+    let first_look = level.looks.as_ref().map_or(0, |looks| looks.first_look as usize);
+    out.extend([level.texels.len(), looks.len(), first_look].iter().flat_map(|n| (*n as u64).to_le_bytes()));
+    out.extend(level.texels.iter().chain(looks).flatten().flat_map(|word| word.to_le_bytes()));
 }
 
 /// The bricks that these bytes hold, if they were made of the contents with this key.
@@ -84,17 +106,12 @@ pub fn from_bytes(bytes: &[u8], key: ContentKey) -> Result<Bricks, CodecError> {
     if bytes.len() < HEADER + CHECKSUM {
         return Err(too_short);
     }
-    let has_looks = read.word() == 1;
-    let own_key = ContentKey([read.long(), read.long()]);
-    let [origin, min, max] = [0; 3].map(|_| DVec3::new(read.number(), read.number(), read.number()));
-    let voxel = read.number();
-    let [x, y, z, first_brick] = [0; 4].map(|_| read.word());
-    let [texels, looks, first_look] = [0; 3].map(|_| read.long());
-    let is_possible = texels <= MAX_BRICK_TEXELS as u64 && looks <= 2 * MAX_BRICK_TEXELS as u64;
-    let expected = HEADER + CHECKSUM + 16 * (texels.saturating_add(looks)).min(1 << 40) as usize;
-    if !is_possible || bytes.len() != expected {
+    let levels = read.word();
+    let expected = read.long().min(1 << 40) as usize;
+    if bytes.len() != expected {
         return Err(CodecError::Length { found: bytes.len(), expected });
     }
+    let own_key = ContentKey([read.long(), read.long()]);
     let (content, sum) = bytes.split_at(bytes.len() - CHECKSUM);
     let mut stored = Words { bytes: sum, at: 0 };
     if checksum(content) != ContentKey([stored.long(), stored.long()]) {
@@ -103,26 +120,67 @@ pub fn from_bytes(bytes: &[u8], key: ContentKey) -> Result<Bricks, CodecError> {
     if own_key != key {
         return Err(CodecError::Stale);
     }
-    let mut texel = || [0; 4].map(|_| read.word());
-    let all: Vec<[u32; 4]> = (0..texels).map(|_| texel()).collect();
-    let looks = Looks { texels: (0..looks).map(|_| texel()).collect(), first_look: first_look as u32 };
-    let bricks = Bricks {
-        grid: BrickGrid { origin, voxel, cells: [x, y, z] },
-        bounds: Aabb::new(min, max),
-        first_brick,
-        texels: all,
-        looks: has_looks.then_some(looks),
-    };
+    let mut read = Words { bytes: content, at: read.at };
+    let all = (0..levels.min(MAX_LEVELS as u32 + 1)).map(|_| read_level(&mut read));
+    let all: Vec<Bricks> = all.collect::<Result<_, _>>().map_err(CodecError::Inconsistent)?;
+    if levels as usize != all.len() || read.at != content.len() {
+        return Err(CodecError::Inconsistent("something follows its levels"));
+    }
+    let bricks = all
+        .into_iter()
+        .rev()
+        .fold(None, |coarser: Option<Bricks>, level| Some(Bricks { coarser: coarser.map(Arc::new), ..level }));
+    let bricks = bricks.ok_or(CodecError::Inconsistent("it has no levels"))?;
     bricks.check().map_err(CodecError::Inconsistent)?;
     Ok(bricks)
 }
 
+fn read_level(read: &mut Words<'_>) -> Result<Bricks, &'static str> {
+    const CUT: &str = "a level is cut off";
+    if read.left() < LEVEL_HEADER {
+        return Err(CUT);
+    }
+    let [origin, min, max] = [0; 3].map(|_| DVec3::new(read.number(), read.number(), read.number()));
+    let voxel = read.number();
+    let [x, y, z, first_brick, has_looks] = [0; 5].map(|_| read.word());
+    let [texels, looks, first_look] = [0; 3].map(|_| read.long());
+    if texels.saturating_add(looks) > (read.left() / 16) as u64 {
+        return Err(CUT);
+    }
+    let mut texel = || [0; 4].map(|_| read.word());
+    let all: Vec<[u32; 4]> = (0..texels).map(|_| texel()).collect();
+    let looks = Looks { texels: (0..looks).map(|_| texel()).collect(), first_look: first_look as u32 };
+    Ok(Bricks {
+        grid: BrickGrid { origin, voxel, cells: [x, y, z] },
+        bounds: Aabb::new(min, max),
+        first_brick,
+        texels: all,
+        looks: (has_looks == 1).then_some(looks),
+        coarser: None,
+    })
+}
+
 impl Bricks {
-    /// Checks that every number is finite and every place within the texels, so that nobody reads outside of them.
+    /// Checks of all levels that every number is finite and every place within the texels, so that nobody reads outside of
+    /// them.
     ///
     /// # Errors
     /// What is wrong.
     pub fn check(&self) -> Result<(), &'static str> {
+        let mut levels = 0;
+        let mut next = Some(self);
+        while let Some(level) = next {
+            level.check_own()?;
+            next = level.coarser.as_deref();
+            if next.is_some_and(|next| next.voxel() != LEVEL_RATIO * level.voxel()) {
+                return Err("its levels are not twice as coarse each");
+            }
+            levels += 1;
+        }
+        if levels > MAX_LEVELS { Err("it has too many levels") } else { Ok(()) }
+    }
+
+    fn check_own(&self) -> Result<(), &'static str> {
         let ensure = |is_so: bool, what| if is_so { Ok(()) } else { Err(what) };
         let Self { grid, bounds, .. } = self;
         let sides = grid.cells.iter().try_fold(1_usize, |all, n| all.checked_mul(*n as usize));
@@ -139,12 +197,17 @@ impl Bricks {
         ensure((self.texels.len() - first).is_multiple_of(BRICK_TEXELS), "a part of a brick is missing")?;
         ensure(self.texels.len() <= MAX_BRICK_TEXELS, "it is too large")?;
         let with_entries = (first - entries) / 2;
-        let is_place = |place: &u32| *place >= INSIDE || (*place as usize) < with_entries;
+        let has_coarser = self.coarser.is_some();
+        let is_place =
+            |place: &u32| *place >= INSIDE || (*place == COARSER && has_coarser) || (*place as usize) < with_entries;
         ensure(self.texels[..entries].iter().flatten().all(is_place), "a cell's entries are nowhere")?;
         let count = self.count();
-        let is_entry = |entry: &u32| entry >> 31 == 0 || ((entry & 0xff_ffff) as usize) < count;
+        let is_entry = |entry: &u32| match *entry {
+            0 | BRICK_INSIDE => true,
+            BRICK_COARSER => has_coarser,
+            entry => entry & HAS_SAMPLES != 0 && ((entry & 0xff_ffff) as usize) < count,
+        };
         ensure(self.texels[entries..first].iter().flatten().all(is_entry), "a brick is nowhere")?;
-
         self.looks.as_ref().map_or(Ok(()), |looks| looks.check(count))
     }
 }
@@ -162,6 +225,10 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
+    fn left(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
     fn next<const N: usize>(&mut self) -> [u8; N] {
         let mut out = [0; N];
         let there = self.bytes.get(self.at..self.at + N).unwrap_or(&[0; N]);

@@ -1,9 +1,10 @@
 //! Bricks of one solid in voxels of several sizes.
 //!
-//! Samples reach only as far as four voxels. Farther from the surface coarser bricks take over, each level with voxels
-//! twice as large. From two voxels to the end of its samples, the distance by one level fades into that by the next, so
-//! that the field is continuous, and times [`BrickLevels::scale`] it is a lower bound of the distance to the surface of
-//! the finest, exact in sign and zeros.
+//! Bricks reach only as far as three voxels. Farther from the surface coarser bricks take over, each level with voxels
+//! twice as large. From one and a half voxels to three, the distance by one level fades into that by the next, so
+//! that the field is continuous, and times [`BrickLevels::scales`] it is a lower bound of the distance to the surface of
+//! the finest, exact in sign and zeros. Where a level has no bricks because the next one tells as much (see `detail`),
+//! the next one is the first.
 //!
 //! The looks of all levels stand behind the texels of all distances, after a header of one texel, and three for each level:
 //!
@@ -21,20 +22,23 @@ use std::sync::Arc;
 use glam::DVec3;
 use isolith_geometry::Aabb;
 
+use rayon::prelude::*;
+
 use super::encode::cells;
-use super::{BRICK_SAMPLES, BRICK_VOXELS, BrickContent, BrickError, Bricks, SAMPLE_REACH, SAMPLE_STEPS};
+use super::{
+    BRICK_SAMPLES, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, Bricks, FADE_END, FADE_START, LEVEL_RATIO,
+};
 
 /// Most levels: at twice the size each, the last reaches 512 voxels of the first.
 pub const MAX_LEVELS: usize = 8;
-/// The size of a voxel in voxels of the next finer level.
-pub const LEVEL_RATIO: f64 = 2.0;
-/// From this distance on a level fades into the next, in voxels.
-pub const FADE_START: f64 = 2.0;
+/// Most by which the factor of a level may be greater than that of the next: the field keeps growing where it fades.
+const MOST_STEP: f64 = 1.25;
+
 /// Bricks in voxels of several sizes, the finest first; never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrickLevels {
     all: Vec<Arc<Bricks>>,
-    scale: f64,
+    scales: Vec<f64>,
     mark: u32,
     /// Empty if any level has no looks.
     look_header: Vec<[u32; 4]>,
@@ -43,28 +47,34 @@ pub struct BrickLevels {
 /// Texels of a level in the header of looks, and those before the first.
 pub const LOOK_LEVEL: usize = 3;
 
+/// Makes the bricks of a solid within `bounds` in voxels of this size, and before them all coarser ones: `make` gets the
+/// size of voxels and the level that is coarser by one.
+///
+/// # Errors
+/// There cannot be such bricks, or `make` returns an error.
+pub fn in_levels(
+    bounds: &Aabb,
+    voxel: f64,
+    make: &mut dyn FnMut(f64, Option<Arc<Bricks>>) -> Result<Bricks, BrickError>,
+) -> Result<Arc<Bricks>, BrickError> {
+    BrickGrid::checked(bounds, voxel)?;
+    let is_large = |voxel: &f64| BrickGrid::around(bounds, *voxel).cells.iter().any(|n| *n > 1);
+    let coarser = |voxel: &f64| Some(LEVEL_RATIO * voxel).filter(|_| is_large(voxel));
+    let sizes: Vec<f64> = std::iter::successors(Some(voxel), coarser).take(MAX_LEVELS).collect();
+    let (finest, others) = sizes.split_first().ok_or(BrickError::Empty)?;
+    let mut coarser = None;
+    for voxel in others.iter().rev() {
+        coarser = Some(Arc::new(make(*voxel, coarser)?));
+    }
+    Ok(Arc::new(make(*finest, coarser)?))
+}
+
 impl BrickLevels {
-    /// These levels, the finest first; `None` if there are none.
-    pub fn new(all: Vec<Arc<Bricks>>) -> Option<Self> {
-        (!all.is_empty() && all.len() <= MAX_LEVELS).then(|| Self::of(all))
-    }
-
-    /// The levels that `make` makes for each size of voxels.
-    ///
-    /// # Errors
-    /// `make` returns one.
-    pub fn made(voxel: f64, make: &mut dyn FnMut(f64) -> Result<Bricks, BrickError>) -> Result<Self, BrickError> {
-        let mut all = vec![Arc::new(make(voxel)?)];
-        while let Some(next) = Self::coarser(&all[all.len() - 1], all.len()) {
-            all.push(Arc::new(make(next)?));
-        }
-        Ok(Self::of(all))
-    }
-
-    /// Measures these levels, once: both numbers take a look at every texel.
-    fn of(all: Vec<Arc<Bricks>>) -> Self {
-        let (scale, mark) = (scale_of(&all), mark_of(&all));
-        let mut made = Self { all, scale, mark, look_header: Vec::new() };
+    /// These bricks, and all coarser ones. Measures them, once: its numbers take a look at every texel.
+    pub fn new(finest: &Arc<Bricks>) -> Self {
+        let all: Vec<Arc<Bricks>> = finest.levels().collect();
+        let (scales, mark) = (scales_of(&all), mark_of(&all));
+        let mut made = Self { all, scales, mark, look_header: Vec::new() };
         if made.all.iter().all(|bricks| bricks.looks.is_some()) {
             made.look_header = look_header(&made);
         }
@@ -99,12 +109,6 @@ impl BrickLevels {
         distances.chain([&*self.look_header]).chain(looks.map(|looks| &*looks.texels))
     }
 
-    /// The size of the voxels of the level after `levels` levels, whose last one is this; `None` if none is needed.
-    pub fn coarser(last: &Bricks, levels: usize) -> Option<f64> {
-        let is_small = last.grid.cells.iter().all(|n| *n <= 1);
-        (levels < MAX_LEVELS && !is_small).then_some(last.grid.voxel * LEVEL_RATIO)
-    }
-
     /// All of them, the finest first.
     pub fn all(&self) -> &[Arc<Bricks>] {
         &self.all
@@ -115,12 +119,11 @@ impl BrickLevels {
         &self.all[0]
     }
 
-    /// The factor on interpolated distances. Two reasons bound it. The interpolation of samples of a function with slopes
-    /// of at most 1 is off by at most half a diagonal of a voxel, and half a step of the samples; a level after the first
-    /// counts where the distance is at least one and a half of its voxels. And the slope of the field is at most 1, where
-    /// a level fades into the next, too.
-    pub fn scale(&self) -> f64 {
-        self.scale
+    /// The factors on the distances that levels tell, with which the slope of the field is at most 1, also where a level
+    /// fades into the next. So it is a lower bound of the distance from its zeros. Coarser levels are steeper, and farther
+    /// apart: their factors are smaller.
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
     }
 
     /// A number of 24 bits that other bricks rarely have.
@@ -168,33 +171,50 @@ fn mark_of(all: &[Arc<Bricks>]) -> u32 {
     (words.fold(0xcbf2_9ce4_8422_2325, step) >> 40) as u32
 }
 
-/// See [`BrickLevels::scale`].
-fn scale_of(all: &[Arc<Bricks>]) -> f64 {
-    let off = 0.75_f64.sqrt() + 0.5 / SAMPLE_STEPS;
-    let nearest = FADE_START / LEVEL_RATIO + 0.5;
-    let steepest = all.iter().fold(1.0_f64, |most, bricks| most.max(bricks.slope()));
-    let apart = all.windows(2).fold(0.0_f64, |most, pair| most.max(apart(&pair[0], &pair[1])));
-    let fading = steepest * apart / (SAMPLE_REACH - FADE_START);
-    (nearest / (nearest + off)).min(1.0 / (steepest + fading))
+/// See [`BrickLevels::scales`].
+///
+/// Let k and k' be the slopes of a level and of the next one, s and s' their factors, a how far they are apart where they
+/// fade, and w the width of the fade from f to f + w. At its share t, where the level tells a distance v = f + w t, the slope
+/// of (1 - t) s v + t s' v' is at most |(1 - t) s - (s - s') v / w| k + t s' k' + s' a k / w. With f = w that is greatest
+/// at t = 0 or 1: s' (k + a k / w), and 2 (s - s') k + s' (k' + a k / w).
+fn scales_of(all: &[Arc<Bricks>]) -> Vec<f64> {
+    const WIDTH: f64 = FADE_END - FADE_START;
+    const { assert!(WIDTH == FADE_START) };
+    let slopes: Vec<f64> = all.iter().map(|bricks| bricks.slope()).collect();
+    let mut scales = vec![1.0; all.len()];
+    for level in (0..all.len()).rev() {
+        let own = slopes[level];
+        let Some(next) = all.get(level + 1) else {
+            scales[level] = 1.0 / own;
+            continue;
+        };
+        let fading = apart(&all[level], next) * own / WIDTH;
+        let most = 1.0 / (own.max(slopes[level + 1]) + fading);
+        let shrink = (most / scales[level + 1]).min(1.0);
+        scales[level + 1..].iter_mut().for_each(|scale| *scale *= shrink);
+        let coarser = scales[level + 1];
+        let room = (1.0 - coarser * (slopes[level + 1] + fading)) / (2.0 * own);
+        scales[level] = (1.0 / own).min(coarser + room).min(MOST_STEP * coarser);
+    }
+    scales
 }
 
 /// How far apart two levels are where one fades into the other, in voxels of the finer: at every other sample, with a
 /// tenth more for those between.
 fn apart(finer: &Bricks, coarser: &Bricks) -> f64 {
-    let voxel = finer.grid.voxel;
-    let mut most = 0.0_f64;
-    for brick in cells(finer.grid.bricks()) {
-        let Some(BrickContent::Near { samples, .. }) = finer.content(brick) else { continue };
+    let all: Vec<[u32; 3]> = cells(finer.grid.bricks()).collect();
+    let of_brick = |brick: &[u32; 3]| {
+        let Some(BrickContent::Samples(samples)) = finer.content(*brick) else { return 0.0 };
+        let mut most = 0.0_f64;
         for [x, y, z] in cells([BRICK_SAMPLES as u32 / 2; 3]).map(|at| at.map(|n| 2 * n)) {
             let side = BRICK_SAMPLES as u32;
             let own = BrickContent::sample_voxels(samples[(x + side * (y + side * z)) as usize]).abs();
-            if own <= FADE_START || own >= SAMPLE_REACH {
-                continue;
+            if own > FADE_START && own < FADE_END {
+                let p = finer.grid.sample([0, 1, 2].map(|i| brick[i] * BRICK_VOXELS + [x, y, z][i]));
+                most = most.max((coarser.value(p).abs() / finer.grid.voxel - own).abs());
             }
-            let p = finer.grid.sample([0, 1, 2].map(|i| brick[i] * BRICK_VOXELS + [x, y, z][i]));
-            let other = coarser.interpolated(p).map_or(SAMPLE_REACH * LEVEL_RATIO, |d| d.abs() / voxel);
-            most = most.max((other - own).abs());
         }
-    }
-    1.1 * most
+        most
+    };
+    1.1 * all.par_iter().map(of_brick).reduce(|| 0.0, f64::max)
 }

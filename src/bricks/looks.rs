@@ -20,6 +20,7 @@
 
 use glam::DVec3;
 
+use super::decode::BrickKind;
 use super::{BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, Bricks};
 
 /// Texels of a brick before the looks.
@@ -166,7 +167,8 @@ impl Bricks {
     /// The looks of the samples around a point. On the surface all have one.
     pub fn looks_at(&self, p: DVec3) -> LookSum {
         let mut sum = LookSum::default();
-        let Some((looks, (brick, voxel, part))) = self.looks.as_ref().zip(self.voxel_around(p)) else { return sum };
+        let around = self.looks.as_ref().zip(self.voxel_around(p));
+        let Some((looks, (BrickKind::Samples(brick), voxel, part))) = around else { return sum };
         for i in 0..8 {
             let corner = [0, 1, 2].map(|axis| voxel[axis] + (i >> axis & 1));
             let share = |axis: usize| if i >> axis & 1 == 1 { part[axis] } else { 1.0 - part[axis] };

@@ -5,36 +5,43 @@
 //!
 //! | texels | hold |
 //! |---|---|
-//! | one per four cells | the place of each cell's entries, in cells with entries; far from the surface [`NO_ENTRIES`], or [`INSIDE`] |
+//! | one per four cells | the place of each cell's entries, in cells with entries; or for all of its bricks [`NO_ENTRIES`], [`INSIDE`] or [`COARSER`] |
 //! | two per cell with entries | an entry for each of its bricks, x fastest |
 //! | 32 per brick | its 8³ samples as bytes, x fastest, then y, then z: neighbors share those on their common face |
 //!
-//! | bits of an entry | near the surface | elsewhere |
-//! |---|---|---|
-//! | 31 | 1 | 0 |
-//! | 24–30 | the greatest slope of the samples here and in the neighbors, less 1, in 1/64, rounded up | 30: inside |
-//! | 0–23 | the number of the brick | the distance to the surface is at least this, in 1/16 of a voxel |
+//! | bits of an entry | hold |
+//! |---|---|
+//! | 31 | the brick has samples |
+//! | 30 | it has none and lies inside, farther than [`BAND`] from the surface |
+//! | 29 | it has none because those of the next coarser level tell as much, see `detail` |
+//! | 0–23 | the number of a brick with samples |
 //!
 //! The *surface* is where the trilinear interpolation of the samples is 0; see `levels` for the field.
 
 mod bake;
 mod codec;
 mod decode;
+mod detail;
 mod digest;
 mod encode;
+mod error;
 mod grid;
 mod levels;
 mod looks;
 mod placeholder;
 
-pub use bake::{BakeProgress, BakedField, bake, bake_field};
+pub use bake::{BakeProgress, BakedField, bake, bake_levels};
 pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
+pub use detail::DETAIL;
 pub use digest::{ContentHash, ContentKey};
-pub use encode::{BrickContent, BrickError, encode};
+pub use encode::{BrickContent, BrickSource, encode};
+pub use error::BrickError;
 pub use grid::BrickGrid;
-pub use levels::{BrickLevels, FADE_START, LEVEL_RATIO, LOOK_LEVEL, MAX_LEVELS};
+pub use levels::{BrickLevels, LOOK_LEVEL, MAX_LEVELS, in_levels};
 pub use looks::{LOOK_HEADER, LookSum, Looks, VoxelLook, linear_from_srgb, surface_samples};
 pub use placeholder::placeholder;
+
+use std::sync::Arc;
 
 use glam::DVec3;
 use isolith_geometry::Aabb;
@@ -55,12 +62,27 @@ pub const CELL_VOXELS: u32 = CELL_BRICKS * BRICK_VOXELS;
 pub const SAMPLE_STEPS: f64 = 32.0;
 /// The greatest distance that samples hold, in voxels: 127 steps.
 pub const SAMPLE_REACH: f64 = 127.0 / SAMPLE_STEPS;
-/// A brick that is at least this far from the surface needs no samples, in voxels.
-pub const BAND: f64 = 4.0;
+/// A brick that is at least this far from the surface needs no samples, in voxels: there the next level counts alone.
+pub const BAND: f64 = FADE_END;
 /// Marks a cell without entries, outside of the solid.
 pub const NO_ENTRIES: u32 = u32::MAX;
 /// Marks a cell without entries, inside.
 pub const INSIDE: u32 = u32::MAX - 1;
+/// Marks a cell without entries, of which the next coarser level tells as much.
+pub const COARSER: u32 = u32::MAX - 2;
+/// The bit of an entry whose brick has samples.
+pub(crate) const HAS_SAMPLES: u32 = 1 << 31;
+/// The bit of an entry whose brick has none, inside.
+pub const BRICK_INSIDE: u32 = 1 << 30;
+/// The bit of an entry whose brick has none, because the next coarser level tells as much.
+pub const BRICK_COARSER: u32 = 1 << 29;
+/// The size of a voxel in voxels of the next finer level.
+pub const LEVEL_RATIO: f64 = 2.0;
+/// From this distance on a level fades into the next, in voxels.
+pub const FADE_START: f64 = 1.5;
+/// From here on the next level counts alone, in voxels. Samples reach farther by a voxel, so that what they are cut off
+/// at does not show before.
+pub const FADE_END: f64 = 3.0;
 /// Most texels of all bricks of a scene together: 256 MiB, and what 32-bit floats count exactly.
 pub const MAX_BRICK_TEXELS: usize = 1 << 24;
 /// Fewest and most voxels along the longest side.
@@ -79,6 +101,8 @@ pub struct Bricks {
     pub texels: Vec<[u32; 4]>,
     /// The looks of the surface.
     pub looks: Option<Looks>,
+    /// The next level, in voxels twice as large; it tells what bricks that are left out here would.
+    pub coarser: Option<Arc<Bricks>>,
 }
 
 impl std::fmt::Debug for Bricks {
@@ -93,11 +117,9 @@ impl Bricks {
         (self.texels.len() - self.first_brick as usize) / BRICK_TEXELS
     }
 
-    /// The greatest slope of the interpolation of its samples anywhere; at least 1.
-    pub fn slope(&self) -> f64 {
-        let entries = &self.texels[self.grid.cell_count().div_ceil(4)..self.first_brick as usize];
-        let slope = |entry: &u32| if entry >> 31 == 1 { entry >> 24 & 0x7f } else { 0 };
-        1.0 + f64::from(entries.iter().flatten().map(slope).max().unwrap_or(0)) / 64.0
+    /// This level and all coarser ones, the finest first.
+    pub fn levels(self: &Arc<Self>) -> impl Iterator<Item = Arc<Self>> {
+        std::iter::successors(Some(self.clone()), |level| level.coarser.clone())
     }
 
     /// Bytes of the texels of distances.

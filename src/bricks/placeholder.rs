@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use glam::{DVec2, DVec3};
 use isolith_geometry::Aabb;
 
-use super::{BrickLevels, bake};
+use super::{BakedField, BrickLevels, bake_levels};
 
 /// Size of a voxel, in meters.
 const VOXEL: f64 = 0.02;
@@ -14,7 +14,8 @@ const VOXEL: f64 = 0.02;
 pub fn placeholder() -> Arc<BrickLevels> {
     static MADE: LazyLock<Arc<BrickLevels>> = LazyLock::new(|| {
         let bounds = Aabb::new(DVec3::new(-0.3, -0.3, -0.3), DVec3::new(0.3, 0.45, 0.3));
-        Arc::new(BrickLevels::made(VOXEL, &mut |voxel| bake(bounds, voxel, &distance)).expect("it is small"))
+        let field = BakedField { bounds, distance: &|p, _| distance(p), look: None };
+        Arc::new(BrickLevels::new(&bake_levels(&field, VOXEL, &|_| true).expect("it is small")))
     });
     MADE.clone()
 }

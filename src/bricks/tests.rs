@@ -35,17 +35,18 @@ fn the_placeholder_has_samples_where_its_surface_is_and_nowhere_else() {
 }
 
 #[test]
-fn too_many_are_refused_with_their_number() {
+fn too_fine_voxels_are_refused_with_their_number() {
     let bounds = Aabb::from_center_half(DVec3::ZERO, DVec3::ONE);
     let refused = bake(bounds, 1e-5, &|p| p.length() - 1.0).unwrap_err().to_string();
-    assert!(refused.contains("texels") && refused.contains("lower resolution"), "{refused}");
+    assert!(refused.contains("199999 voxels") && refused.contains("at most 1024"), "{refused}");
 }
 
 #[test]
 fn the_scale_of_a_ball_is_little_less_than_what_its_slope_allows() {
     let bounds = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(0.5));
-    let mut make = |voxel| bake(bounds, voxel, &|p: DVec3| p.length() - 0.5);
-    let levels = BrickLevels::made(0.02, &mut make).unwrap();
+    let field = BakedField { bounds, distance: &|p, _| p.length() - 0.5, look: None };
+    let levels = BrickLevels::new(&bake_levels(&field, 0.02, &|_| true).unwrap());
     assert!((3..=MAX_LEVELS).contains(&levels.all().len()), "{levels:?}");
-    assert!((0.45..0.75).contains(&levels.scale()), "{}", levels.scale());
+    let scales = levels.scales();
+    assert!((0.7..1.0).contains(&scales[0]) && scales.is_sorted_by(|a, b| a >= b), "{scales:?}");
 }

@@ -275,6 +275,14 @@ impl TriangleMesh {
         !self.parts.iter().all(is_usual) || self.colors.iter().any(|color| *color != [1.0; 4])
     }
 
+    /// The surface and the color of a triangle that looks the same all over; `None` for one with textures or several colors.
+    pub(super) fn plain_look(&self, triangle: u32) -> Option<(Surface, [f32; 4])> {
+        let surface = self.part(triangle).surface;
+        let textures = [surface.base_color, surface.metal_rough, surface.normal, surface.occlusion, surface.emissive];
+        let [a, b, c] = self.vertices(triangle).map(|vertex| self.colors[vertex]);
+        (textures.iter().all(Option::is_none) && a == b && a == c).then_some((surface, a))
+    }
+
     /// What its surfaces have and bricks do not keep.
     pub fn unkept_looks(&self) -> Vec<&'static str> {
         type Has = fn(&Surface) -> bool;

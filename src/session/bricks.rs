@@ -307,7 +307,7 @@ fn of_group(content: &GroupContent, key: &BrickKey, cache: &BrickCache, task: &T
         Ok((content, bricks)) if !is_known.get() => cache.store(*content, bricks).err(),
         _ => None,
     };
-    BrickReply { result: made.map(|(_, bricks)| Arc::new(bricks)), remarks: remarks.into_inner(), unkept }
+    BrickReply { result: made.map(|(_, bricks)| bricks), remarks: remarks.into_inner(), unkept }
 }
 
 fn of_mesh(mesh: &TriangleMesh, key: &BrickKey, cache: &BrickCache, task: &Task) -> BrickReply {
@@ -344,7 +344,7 @@ fn of_mesh(mesh: &TriangleMesh, key: &BrickKey, cache: &BrickCache, task: &Task)
         Ok(made) => {
             remarks.extend(made.remarks);
             let unkept = cache.store(content, &made.bricks).err();
-            BrickReply { result: Ok(Arc::new(made.bricks)), remarks, unkept }
+            BrickReply { result: Ok(made.bricks), remarks, unkept }
         }
         Err(error) => BrickReply { result: Err(error), remarks, unkept: None },
     }

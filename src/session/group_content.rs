@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use isolith_bricks::{BakedField, BrickError, Bricks, ContentHash, ContentKey, VoxelLook, bake_field};
+use isolith_bricks::{BakedField, BrickError, Bricks, ContentHash, ContentKey, VoxelLook, bake_levels};
 use isolith_field::eval::surface;
 use isolith_field::flatten;
 use isolith_field::scene_eval::SceneEvaluator;
@@ -95,7 +95,7 @@ impl GroupContent {
         [resolution, voxel]: [f64; 2],
         known: &dyn Fn(ContentKey) -> Option<Bricks>,
         task: &Task,
-    ) -> Result<(ContentKey, Bricks), BrickError> {
+    ) -> Result<(ContentKey, Arc<Bricks>), BrickError> {
         let flat = flatten(&self.scene, 0.0).map_err(|error| BrickError::Refused(error.to_string()))?;
         let all = |all: Aabb, component: &isolith_field::Component| all.union(&component.world_bounds());
         let bounds = flat.components.iter().fold(Aabb::EMPTY, all);
@@ -103,7 +103,7 @@ impl GroupContent {
         let voxel = if voxel > 0.0 || bounds.is_empty() || !bounds.is_finite() { voxel } else { longest / resolution };
         let key = self.key(voxel);
         if let Some(bricks) = known(key) {
-            return Ok((key, bricks));
+            return Ok((key, Arc::new(bricks)));
         }
         let distance = |p: DVec3, within: f64| SceneEvaluator::new(&flat).distance(p, within).value;
         let look = |p: DVec3| {
@@ -119,7 +119,7 @@ impl GroupContent {
             task.set_progress(share);
             !task.is_canceled()
         };
-        bake_field(&field, if voxel > 0.0 { voxel } else { 1.0 }, &progress).map(|bricks| (key, bricks))
+        bake_levels(&field, if voxel > 0.0 { voxel } else { 1.0 }, &progress).map(|bricks| (key, bricks))
     }
 }
 

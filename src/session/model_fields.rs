@@ -49,10 +49,10 @@ struct ModelLevels {
 }
 
 impl ModelLevels {
-    fn new(levels: Vec<Arc<Bricks>>) -> Option<Self> {
-        let full = Arc::new(BrickLevels::new(levels)?);
+    fn new(finest: &Arc<Bricks>) -> Self {
+        let full = Arc::new(BrickLevels::new(finest));
         let plain = if full.has_looks() { Arc::new(full.without_looks()) } else { full.clone() };
-        Some(Self { full, plain })
+        Self { full, plain }
     }
 }
 
@@ -112,17 +112,16 @@ impl ModelFields {
     pub fn make_all(&mut self, scene: &Scene, meshes: &mut MeshLibrary, task: &Task) -> bool {
         self.groups.follow(scene);
         let wanted = self.wanted(scene);
-        let mut keys = self.keys(&wanted);
+        // What is too large for the budget is known when it is made.
         loop {
+            let keys = self.keys(&wanted);
             if !self.library.make_all(&keys, meshes, task) {
                 return false;
             }
-            let more = self.keys(&wanted);
-            if more == keys {
-                self.assemble(&wanted, scene);
+            self.assemble(&wanted, scene);
+            if self.keys(&wanted) == keys {
                 return true;
             }
-            keys = more;
         }
     }
 
@@ -195,27 +194,18 @@ impl ModelFields {
         keys
     }
 
-    /// What is to be made: the finest voxels of each, and behind them the next larger ones of those that are made.
+    /// What is to be made: what the scene asks for, and what has larger voxels instead.
     fn keys(&self, wanted: &[BrickKey]) -> Vec<BrickKey> {
-        let mut keys = wanted.to_vec();
-        for key in wanted {
-            keys.extend(self.chain(key).1);
-        }
-        keys
+        let larger = wanted.iter().filter_map(|key| self.larger(key, *self.enlarged.get(key)?));
+        wanted.iter().cloned().chain(larger).collect()
     }
 
-    /// The bricks that are made so far, the finest first, and the keys of all but those.
-    fn chain(&self, finest: &BrickKey) -> (Vec<Arc<Bricks>>, Vec<BrickKey>) {
-        let (mut levels, mut keys) = (Vec::new(), Vec::new());
-        let mut next = self.library.nearest(finest).and_then(Result::ok);
-        while let Some(bricks) = next.take() {
-            levels.push(bricks);
-            let Some(voxel) = BrickLevels::coarser(&levels[levels.len() - 1], levels.len()) else { break };
-            let key = BrickKey { subject: finest.subject.clone(), resolution: 0.0, voxel };
-            next = self.library.get(&key).and_then(Result::ok);
-            keys.push(key);
-        }
-        (levels, keys)
+    /// The same in voxels that are `factor` times as large. The coarser levels of a model have sheets as thin as its finest,
+    /// which would have holes in their voxels.
+    fn larger(&self, key: &BrickKey, factor: u32) -> Option<BrickKey> {
+        let finest = self.library.nearest(key)?.ok()?;
+        let voxel = f64::from(factor) * finest.voxel();
+        Some(BrickKey { subject: key.subject.clone(), resolution: 0.0, voxel })
     }
 
     /// Puts together what was made. Returns whether anything is new.
@@ -226,11 +216,10 @@ impl ModelFields {
             if chains.iter().any(|chain| chain.key == *key) {
                 continue;
             }
-            let (levels, keys) = self.chain(key);
-            // Shown once it is complete: far from the surface it would be a bound of little use.
-            let is_complete = levels.len() > keys.len() || keys.is_empty();
+            let Some(Ok(finest)) = self.library.nearest(key) else { continue };
             let is_group = matches!(key.subject, BrickSubject::Group(_));
-            chains.push(Chain { key: key.clone(), levels, is_complete, skipped: 0, shown: [false, is_group] });
+            let levels = finest.levels().collect();
+            chains.push(Chain { key: key.clone(), levels, skipped: 0, shown: [false, is_group] });
         }
         for request in scene.model_requests() {
             let key = key_of(&request);
@@ -241,22 +230,15 @@ impl ModelFields {
         fit(&mut chains, self.budget);
         let mut all = HashMap::new();
         self.enlarged.clear();
-        for Chain { key, levels, is_complete, skipped, .. } in chains {
-            let levels = &levels[skipped..];
-            let old = self.levels.get(&key);
-            let same = |old: &&ModelLevels| {
-                let old = old.full.all();
-                old.len() == levels.len() && old.iter().zip(levels).all(|(a, b)| Arc::ptr_eq(a, b))
-            };
-            let new = match old.filter(same).or(old.filter(|_| !is_complete)) {
-                Some(old) => Some(old.clone()),
-                None if is_complete => ModelLevels::new(levels.to_vec()),
-                None => None,
-            };
+        for Chain { key, levels, skipped, .. } in chains {
+            let made = (skipped > 0).then(|| self.library.get(&self.larger(&key, 1 << skipped)?)?.ok()).flatten();
+            let finest = made.as_ref().unwrap_or(&levels[skipped]);
+            let old = self.levels.get(&key).filter(|old| Arc::ptr_eq(&old.full.all()[0], finest));
+            let new = old.cloned().unwrap_or_else(|| ModelLevels::new(finest));
             if skipped > 0 {
                 self.enlarged.insert(key.clone(), 1 << skipped);
             }
-            all.extend(new.map(|new| (key, new)));
+            all.insert(key, new);
         }
         let is_new = all.len() != self.levels.len()
             || all.iter().any(|(key, new)| self.levels.get(key).is_none_or(|old| !Arc::ptr_eq(&old.full, &new.full)));
@@ -266,12 +248,11 @@ impl ModelFields {
     }
 }
 
-/// The bricks of a request that are made so far.
+/// The bricks of a request.
 struct Chain {
     key: BrickKey,
     /// The finest first.
     levels: Vec<Arc<Bricks>>,
-    is_complete: bool,
     /// How many of the finest are left out.
     skipped: usize,
     /// Whether they are shown without looks, and with looks.
@@ -324,7 +305,7 @@ mod tests {
     fn chain(resolution: f64, file_materials: bool) -> Chain {
         let key = BrickKey { subject: BrickSubject::Model("model.glb".into()), resolution, voxel: 0.0 };
         let shown = [!file_materials, file_materials];
-        Chain { key, levels: placeholder().all().to_vec(), is_complete: true, skipped: 0, shown }
+        Chain { key, levels: placeholder().all().to_vec(), skipped: 0, shown }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use isolith::field::GBuffer;
 use isolith::field::light::model_look::model_look;
 use isolith::field::reference::image::render_reference;
 use isolith::gallery;
-use isolith::mesh::{MeshLibrary, bricks_of, voxel_for};
+use isolith::mesh::{MeshLibrary, voxel_for, voxelized};
 use isolith::render::EvalStrategy;
 use isolith::scene::{
     CameraNode, Instancer, Light, Material, MaterialId, MeshNode, ModelFile, Modifier, Node, NodeKind, Object, Scene,
@@ -185,7 +185,7 @@ fn looks_are_means_over_the_footprint_and_reach_beyond_the_surface() {
     let mut library = MeshLibrary::new(Some(folder.path().to_path_buf()));
     let mesh = library.get(AMPHORA).unwrap();
     let voxel = voxel_for(&mesh.bounds, 128.0);
-    let levels = BrickLevels::made(voxel, &mut |voxel| bricks_of(&mesh, voxel, &mut |_| true)).unwrap();
+    let levels = BrickLevels::new(&voxelized(&mesh, voxel, &mut |_| true).unwrap().bricks);
     assert!(levels.has_looks() && !levels.without_looks().has_looks());
     assert!(levels.without_looks().texels() < levels.texels());
     let (center, unit) = levels.look_space();

@@ -12,14 +12,14 @@ fn progress_grows_and_a_cancel_stops_it() {
     let mesh = Soup::knot(40).mesh();
     let voxel = voxel_for(&mesh.bounds, 384.0);
     let mut told = Vec::new();
-    bricks_of(&mesh, voxel, &mut |share| {
+    voxelized(&mesh, voxel, &mut |share| {
         told.push(share);
         true
     })
     .unwrap();
     assert!(told.is_sorted() && told.iter().all(|share| SHARES.contains(share)), "{told:?}");
     let mut calls = 0;
-    let canceled = bricks_of(&mesh, voxel, &mut |_| {
+    let canceled = voxelized(&mesh, voxel, &mut |_| {
         calls += 1;
         false
     });
@@ -29,7 +29,7 @@ fn progress_grows_and_a_cancel_stops_it() {
 #[test]
 fn what_cannot_be_bricks_is_refused_with_the_reason() {
     let ball = Soup::sphere(8, 1.0).mesh();
-    let refused = |voxel: f64| bricks_of(&ball, voxel, &mut |_| true).unwrap_err().to_string();
+    let refused = |voxel: f64| voxelized(&ball, voxel, &mut |_| true).unwrap_err().to_string();
     assert!(refused(1e-5).contains("at most 1024"), "{}", refused(1e-5));
     for voxel in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(refused(voxel), BrickError::Voxel.to_string());
@@ -83,6 +83,6 @@ fn the_usual_resolution_follows_the_edges() {
 #[test]
 fn bricks_do_not_depend_on_threads() {
     let mesh = Soup::torus(24).mesh();
-    let made = || bricks_of(&mesh, 0.02, &mut |_| true).unwrap();
+    let made = || voxelized(&mesh, 0.02, &mut |_| true).unwrap().bricks;
     assert_eq!(made(), made());
 }

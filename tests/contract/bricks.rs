@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isolith::bricks::{BrickLevels, Bricks, bake};
+use isolith::bricks::{BakedField, BrickLevels, Bricks, bake_levels};
 use isolith::field::PreparedShape;
 use isolith::field::eval::{Dual, Real};
 use isolith::geometry::Aabb;
@@ -19,6 +19,9 @@ pub fn interpolated(bricks: &Bricks, p: DVec3) -> f64 {
     let at = (p - bricks.grid.origin) / bricks.grid.voxel;
     let low = at.floor();
     let t = at - low;
+    if let Some(coarser) = bricks.coarser.as_ref().filter(|_| is_left_out(bricks, (low / 7.0).floor())) {
+        return 2.0 * interpolated(coarser, p);
+    }
     let mut sum = 0.0;
     for corner in 0..8 {
         let offset = DVec3::new(f64::from(corner & 1), f64::from(corner >> 1 & 1), f64::from(corner >> 2));
@@ -27,6 +30,11 @@ pub fn interpolated(bricks: &Bricks, p: DVec3) -> f64 {
         sum += weight.x * weight.y * weight.z * sample;
     }
     sum
+}
+
+/// Whether a brick has no samples because the coarser level tells as much.
+fn is_left_out(bricks: &Bricks, brick: DVec3) -> bool {
+    entry_of(bricks, brick).map_or(place_of(bricks, brick) == Some(u32::MAX - 2), |entry| entry == 1 << 29)
 }
 
 /// The sample at a corner of the voxel at `low`.
@@ -43,20 +51,25 @@ fn sample_of(bricks: &Bricks, low: DVec3, offset: DVec3) -> Option<f64> {
     Some((f64::from(bytes[at % 4]) - 128.0) / 32.0)
 }
 
-/// The entry of a brick; `None` outside of the grid and in cells without entries.
-fn entry_of(bricks: &Bricks, brick: DVec3) -> Option<u32> {
+/// The place of the cell of a brick; `None` outside of the grid.
+fn place_of(bricks: &Bricks, brick: DVec3) -> Option<u32> {
     let counts = bricks.grid.cells.map(|n| n as usize);
     let index = brick.to_array().map(|v| v as i64);
     if (0..3).any(|i| index[i] < 0 || index[i] >= 2 * counts[i] as i64) {
         return None;
     }
-    let [x, y, z] = index.map(|v| v as usize);
-    let cell = x / 2 + counts[0] * (y / 2 + counts[1] * (z / 2));
-    let cells = counts[0] * counts[1] * counts[2];
-    let place = bricks.texels[cell / 4][cell % 4];
-    let number = x % 2 + 2 * (y % 2) + 4 * (z % 2);
-    let entries = cells.div_ceil(4) + 2 * place as usize;
-    (place < u32::MAX - 1).then(|| bricks.texels[entries + number / 4][number % 4])
+    let [x, y, z] = index.map(|v| v as usize / 2);
+    let cell = x + counts[0] * (y + counts[1] * z);
+    Some(bricks.texels[cell / 4][cell % 4])
+}
+
+/// The entry of a brick; `None` outside of the grid and in cells without entries.
+fn entry_of(bricks: &Bricks, brick: DVec3) -> Option<u32> {
+    let place = place_of(bricks, brick).filter(|place| *place < u32::MAX - 2)?;
+    let [x, y, z] = brick.to_array().map(|v| v as usize % 2);
+    let number = x + 2 * y + 4 * z;
+    let entries = bricks.grid.cell_count().div_ceil(4) + 2 * place as usize;
+    Some(bricks.texels[entries + number / 4][number % 4])
 }
 
 /// 99 outside of the solid and -99 inside, by the entry or the sign of the cell.
@@ -65,13 +78,7 @@ fn side(bricks: &Bricks, p: DVec3) -> f64 {
     if let Some(entry) = entry_of(bricks, (at / 7.0).floor()) {
         return if entry & (1 << 30) == 0 { 99.0 } else { -99.0 };
     }
-    let counts = DVec3::from(bricks.grid.cells.map(f64::from));
-    let cell = (at / 14.0).floor();
-    if cell.min_element() < 0.0 || (counts - cell).min_element() < 1.0 {
-        return 99.0;
-    }
-    let index = (cell.x + counts.x * (cell.y + counts.y * cell.z)) as usize;
-    if bricks.texels[index / 4][index % 4] == u32::MAX { 99.0 } else { -99.0 }
+    if place_of(bricks, (at / 7.0).floor()) == Some(u32::MAX - 1) { -99.0 } else { 99.0 }
 }
 
 /// What can be seen of the surface along each axis.
@@ -107,8 +114,8 @@ pub fn patches(bricks: &Arc<Bricks>) -> Vec<Patch> {
 /// A ball of this radius as a model.
 fn ball(radius: f64, voxel: f64) -> Shape {
     let bounds = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(radius));
-    let mut make = |voxel| bake(bounds, voxel, &|p: DVec3| p.length() - radius);
-    let levels = Arc::new(BrickLevels::made(voxel, &mut make).unwrap());
+    let field = BakedField { bounds, distance: &|p, _| p.length() - radius, look: None };
+    let levels = Arc::new(BrickLevels::new(&bake_levels(&field, voxel, &|_| true).unwrap()));
     let mut shape = ShapeKind::MeshField.default_shape();
     if let Shape::MeshField { file, .. } = &mut shape {
         *file = ModelFile::new("ball.glb").with_bricks(levels);

@@ -1,12 +1,15 @@
 //! The field of distance bricks, see `isolith_bricks` for their texels and for why it is a lower bound. Rows of the
-//! payload: the number of levels, the factor on distances, and a number that says which bricks they are; the middle and half
-//! the size of a box around the surface. Then for each level: origin of the voxels and their size; cells along each axis, first texel; the first texel of samples after that
-//! one.
+//! payload: the number of levels, and a number that says which bricks they are; the middle and half the size of a box around
+//! the surface. Then for each level: origin of the voxels and their size; cells along each axis, first texel; the first texel
+//! of samples after that one, and the factor on distances.
 
 use super::Real;
 use super::sdf::Data;
 use glam::DVec3;
-use isolith_bricks::{BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, FADE_START, SAMPLE_REACH, SAMPLE_STEPS};
+use isolith_bricks::{
+    BRICK_COARSER, BRICK_INSIDE, BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, COARSER, FADE_END, FADE_START,
+    INSIDE, NO_ENTRIES, SAMPLE_REACH, SAMPLE_STEPS,
+};
 
 /// Rows of a level.
 const LEVEL_ROWS: usize = 3;
@@ -21,59 +24,79 @@ pub const MESH_FIELD_SPREAD: f64 = 0.75;
 pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
     let at = DVec3::from(p.map(T::value));
     T::known(mesh_field(at, data), p, || {
-        let step = MESH_FIELD_SPREAD * data.row(4)[3];
+        let step = MESH_FIELD_SPREAD * mesh_field_voxel(at, data);
         let rise = |axis: DVec3| mesh_field(at + axis * step, data) - mesh_field(at - axis * step, data);
         (DVec3::from(DVec3::AXES.map(rise)) / (2.0 * step)).clamp_length_max(1.0)
     })
 }
 
+/// The size of the voxels of the finest level that tells anything of a point, in meters.
+fn mesh_field_voxel(p: DVec3, data: Data<'_>) -> f64 {
+    let (_, told) = mesh_field_told(p, data, 0);
+    data.row(4 + LEVEL_ROWS * (told - 1))[3]
+}
+
 fn mesh_field(p: DVec3, data: Data<'_>) -> f64 {
-    let [levels, scale, ..] = data.row(1);
-    let (mut sum, mut rest, mut sign) = (0.0, 1.0, 1.0);
-    for level in 0..levels as usize {
-        let (value, raw) = mesh_field_level(p, data, level, scale);
-        if level == 0 && raw < 0.0 {
-            sign = -1.0;
+    let levels = data.row(1)[0] as usize;
+    let (mut sum, mut rest) = (0.0, 1.0);
+    // The sign is that of the first level that tells anything.
+    let (mut found, mut told) = mesh_field_told(p, data, 0);
+    let is_inside = found[1] < 0.0;
+    for level in 0..levels {
+        if told <= level {
+            (found, told) = mesh_field_told(p, data, level);
         }
-        let is_last = level + 1 == levels as usize;
-        let fade = ((raw.abs() - FADE_START) / (SAMPLE_REACH - FADE_START)).clamp(0.0, 1.0);
-        let fade = if is_last { 0.0 } else { fade };
-        sum += rest * (1.0 - fade) * value;
+        let [beyond, distance] = [found[0], found[1].abs()];
+        let row = 4 + LEVEL_ROWS * level;
+        let fade = ((distance / data.row(row)[3] - FADE_START) / (FADE_END - FADE_START)).clamp(0.0, 1.0);
+        let fade = if level + 1 == levels { 0.0 } else { fade };
+        sum += rest * (1.0 - fade) * (beyond + (distance * data.row(row + 2)[1]).powi(2)).sqrt();
         rest *= fade;
         if rest == 0.0 {
             break;
         }
     }
     let [center, half] = [2, 3].map(|row| DVec3::from_slice(&data.row(row)));
-    let beyond = ((p - center).abs() - half).max(DVec3::ZERO).length();
-    if sign < 0.0 { -sum } else { sum.max(beyond) }
+    let beyond = data.row(6)[1] * ((p - center).abs() - half).max(DVec3::ZERO).length();
+    if is_inside { -sum } else { sum.max(beyond) }
 }
 
-/// A lower bound of the distance by the samples of a level, in meters, and what they tell, in voxels.
+/// What the first level from this one on tells: see [`mesh_field_level`]; and the number of the level after it.
+fn mesh_field_told(p: DVec3, data: Data<'_>, first: usize) -> ([f64; 2], usize) {
+    let levels = data.row(1)[0] as usize;
+    let told = (first..levels).find_map(|level| Some((mesh_field_level(p, data, level)?, level + 1)));
+    // The last level always tells something.
+    told.unwrap_or(([0.0; 2], levels))
+}
+
+/// The square of the distance from the grid of a level, and the distance that its samples tell at the nearest point of the
+/// grid, in meters; `None` where the next level tells as much.
 ///
 /// Outside of the grid the distance to the grid and that from there on are the sides of a right triangle or of an obtuse
 /// one, since the grid is convex and holds the surface.
-fn mesh_field_level(p: DVec3, data: Data<'_>, level: usize, scale: f64) -> (f64, f64) {
+fn mesh_field_level(p: DVec3, data: Data<'_>, level: usize) -> Option<[f64; 2]> {
     let row = 4 + LEVEL_ROWS * level;
     let [x, y, z, voxel] = data.row(row);
     let size = data.row(row + 1);
     let at = (p - DVec3::new(x, y, z)) / voxel;
     let within = at.clamp(DVec3::ZERO, DVec3::new(size[0], size[1], size[2]) * f64::from(CELL_VOXELS));
-    let raw = mesh_field_within(within.to_array(), data, row);
-    let (value, beside) = (raw.abs() * voxel * scale, (at - within) * voxel);
-    (if beside == DVec3::ZERO { value } else { beside.length().hypot(value) }, raw)
+    let raw = mesh_field_within(within.to_array(), data, row)?;
+    Some([((at - within) * voxel).length_squared(), raw * voxel])
 }
 
 /// The distance that samples tell at a point within the grid, both in voxels, from the origin of the grid.
-fn mesh_field_within(at: [f64; 3], data: Data<'_>, row: usize) -> f64 {
+fn mesh_field_within(at: [f64; 3], data: Data<'_>, row: usize) -> Option<f64> {
     let [nx, ny, nz, first] = data.row(row + 1);
     let counts = [nx, ny, nz];
     let cell = [0, 1, 2].map(|i| (at[i] / f64::from(CELL_VOXELS)).floor().min(counts[i] - 1.0));
     let index = (cell[0] + nx * (cell[1] + ny * cell[2])) as usize;
     let places = first as usize;
     let place = data.texel(places + index / 4)[index % 4];
-    if place >= isolith_bricks::INSIDE {
-        return if place == isolith_bricks::INSIDE { -SAMPLE_REACH } else { SAMPLE_REACH };
+    match place {
+        COARSER => return None,
+        INSIDE => return Some(-SAMPLE_REACH),
+        NO_ENTRIES => return Some(SAMPLE_REACH),
+        _ => {}
     }
     let inner = [0, 1, 2].map(|i| at[i] - cell[i] * f64::from(CELL_VOXELS));
     let last = f64::from(CELL_BRICKS - 1);
@@ -81,12 +104,15 @@ fn mesh_field_within(at: [f64; 3], data: Data<'_>, row: usize) -> f64 {
     let number = (brick[0] + 2.0 * brick[1] + 4.0 * brick[2]) as usize;
     let entries = places + ((nx * ny * nz) as usize).div_ceil(4);
     let entry = data.texel(entries + 2 * place as usize + number / 4)[number % 4];
-    if entry >> 31 == 0 {
-        return if entry & (1 << 30) == 0 { SAMPLE_REACH } else { -SAMPLE_REACH };
+    match entry {
+        BRICK_COARSER => return None,
+        BRICK_INSIDE => return Some(-SAMPLE_REACH),
+        0 => return Some(SAMPLE_REACH),
+        _ => {}
     }
     let samples = first as usize + data.row(row + 2)[0] as usize + (entry & 0xff_ffff) as usize * BRICK_TEXELS;
     let within = [0, 1, 2].map(|i| inner[i] - brick[i] * f64::from(BRICK_VOXELS));
-    mesh_field_samples(within, samples, data)
+    Some(mesh_field_samples(within, samples, data))
 }
 
 /// The interpolation of a brick's samples at a point, in voxels from its first sample.

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::detail::Detail;
 use super::samples::{Distances, HALF_DIAGONAL, Sampled, voxels};
 use super::watch::Watch;
 use isolith_bricks::{
@@ -15,19 +16,21 @@ const ASKED: f32 = 20.0;
 const IN_CELL: usize = (CELL_BRICKS * CELL_BRICKS * CELL_BRICKS) as usize;
 /// More than distances in 32 bits are off, in voxels.
 const ROUNDING: f64 = 0.01;
-/// Of all bricks with samples, about half are near enough to keep them.
+/// Of all bricks with samples, at least a third are near enough to keep them.
 const SAMPLED_PER_KEPT: usize = 4;
 
 /// What is known of a brick.
 enum Known {
-    /// At least this far from the surface, in voxels.
-    Far(f32),
-    /// Where its samples are.
-    Sampled { samples: Box<[u8; BRICK_VOLUME]>, slope: f64, far: Option<f64> },
+    /// Nothing of it is near the surface.
+    Empty { is_inside: bool },
+    /// The next coarser level tells as much.
+    Coarser,
+    /// Its samples, and on which side it lies if it turned out to be empty.
+    Sampled { samples: Box<[u8; BRICK_VOLUME]>, empty: Option<bool> },
 }
 
 /// What is known of all bricks near the surface, and the distances at the corners of cells.
-pub(super) struct Contents {
+pub(super) struct Contents<'a> {
     /// Corners along each axis.
     size: [usize; 3],
     corners: Vec<f32>,
@@ -35,14 +38,22 @@ pub(super) struct Contents {
     slots: Vec<u32>,
     bricks: Vec<Known>,
     grid: BrickGrid,
+    distances: &'a Distances<'a>,
+    detail: Option<Detail<'a>>,
 }
 
-impl Contents {
-    /// Measures all of it.
-    pub fn new(grid: BrickGrid, distances: &Distances<'_>, watch: &Watch) -> Result<Self, BrickError> {
+impl<'a> Contents<'a> {
+    /// Measures all of it; bricks that `detail` does not ask for are left out.
+    pub fn new(
+        grid: BrickGrid,
+        distances: &'a Distances<'a>,
+        detail: Option<Detail<'a>>,
+        watch: &Watch,
+    ) -> Result<Self, BrickError> {
         let size = grid.cells.map(|n| n as usize + 1);
         let corners = measured(&grid, size, distances, watch)?;
-        let mut out = Self { size, corners, slots: vec![u32::MAX; grid.cell_count()], bricks: Vec::new(), grid };
+        let (slots, bricks) = (vec![u32::MAX; grid.cell_count()], Vec::new());
+        let mut out = Self { size, corners, slots, bricks, grid, distances, detail };
         let mut asked = Vec::new();
         for (index, slot) in out.slots.iter_mut().enumerate() {
             let cell = split(index, grid.cells);
@@ -52,7 +63,7 @@ impl Contents {
                 asked.push(cell);
             }
         }
-        out.bricks = out.sampled(&asked, distances, watch)?;
+        out.bricks = out.sampled(&asked, watch)?;
         out.share(&asked, watch)?;
         Ok(out)
     }
@@ -65,20 +76,13 @@ impl Contents {
     /// What is known of a brick; its cell has a corner near the surface.
     pub fn brick(&self, brick: [u32; 3]) -> BrickContent {
         match self.known(brick) {
-            Some(Known::Sampled { samples, far: None, .. }) => {
-                let mut slope = 0.0_f64;
-                for at in around() {
-                    let neighbor = [0, 1, 2].map(|i| brick[i].wrapping_add_signed(at[i]));
-                    if let Some(Known::Sampled { slope: own, .. }) = self.known(neighbor) {
-                        slope = slope.max(*own);
-                    }
-                }
-                BrickContent::Near { samples: samples.clone(), slope }
+            Some(Known::Sampled { samples, empty: None }) => BrickContent::Samples(samples.clone()),
+            Some(Known::Sampled { empty: Some(is_inside), .. } | Known::Empty { is_inside }) => {
+                BrickContent::Empty { is_inside: *is_inside }
             }
-            Some(Known::Sampled { far: Some(far), .. }) => BrickContent::Far(*far),
-            Some(Known::Far(far)) => BrickContent::Far(f64::from(*far)),
+            Some(Known::Coarser) => BrickContent::Coarser,
             // Nobody asks for bricks of other cells.
-            None => BrickContent::Far(BAND),
+            None => BrickContent::Empty { is_inside: false },
         }
     }
 
@@ -97,11 +101,11 @@ impl Contents {
     }
 
     /// Samples the bricks of these cells.
-    fn sampled(&self, cells: &[[u32; 3]], distances: &Distances<'_>, watch: &Watch) -> Result<Vec<Known>, BrickError> {
+    fn sampled(&self, cells: &[[u32; 3]], watch: &Watch) -> Result<Vec<Known>, BrickError> {
         let share = 0.4 / cells.len().max(1) as f64;
         let of_cell = |cell: &[u32; 3]| {
             watch.check()?;
-            let bricks = bricks_of_cell(*cell).map(|brick| self.measure(brick, distances));
+            let bricks = bricks_of_cell(*cell).map(|brick| self.measure(brick));
             watch.advance(share);
             Ok(bricks.collect::<Vec<_>>())
         };
@@ -120,35 +124,35 @@ impl Contents {
         Ok(out)
     }
 
-    fn measure(&self, brick: [u32; 3], distances: &Distances<'_>) -> Known {
+    fn measure(&self, brick: [u32; 3]) -> Known {
         let first = brick.map(|n| n * BRICK_VOXELS);
         // A corner of the cell is at most a cell away.
         let corner = self.corners[joined(brick.map(|n| (n / CELL_BRICKS) as usize), self.size)].abs();
-        let away = distances.at(voxels(&self.grid, self.grid.middle(brick)), first, corner + 25.0);
+        let away = self.distances.at(voxels(&self.grid, self.grid.middle(brick)), first, corner + 25.0);
         let beyond = away.abs() - HALF_DIAGONAL - 0.01;
         if beyond >= BAND as f32 {
-            return Known::Far(beyond.copysign(away));
+            return Known::Empty { is_inside: away < 0.0 };
         }
-        let Sampled { samples, least } = distances.sampled(brick);
+        if self.detail.as_ref().is_some_and(|detail| detail.is_told(&self.grid, brick, self.distances)) {
+            return Known::Coarser;
+        }
+        let Sampled { samples, least } = self.distances.sampled(brick);
         // The square of a distance, less that of the place, is concave: between samples it is at most 1/4 for each axis
         // below the least of theirs.
         let least = f64::from(least) - ROUNDING;
-        let between =
-            if distances.solid.thin.is_empty() { (least * least - 0.75).max(0.0).sqrt() } else { least - 0.87 };
-        let far = between.max(f64::from(beyond));
-        let sign = if samples[0] < 128 { -1.0 } else { 1.0 };
-        Known::Sampled { samples, slope: 0.0, far: (far >= BAND).then_some(far.copysign(sign)) }
+        let between = if self.distances.has_thin() { least - 0.87 } else { (least * least - 0.75).max(0.0).sqrt() };
+        let is_inside = samples[0] < 128;
+        Known::Sampled { samples, empty: (between.max(f64::from(beyond)) >= BAND).then_some(is_inside) }
     }
 
-    /// Gives neighbors the same samples on their common face, and measures slopes.
+    /// Gives neighbors the same samples on their common face.
     fn share(&mut self, cells: &[[u32; 3]], watch: &Watch) -> Result<(), BrickError> {
         let bricks: Vec<[u32; 3]> = cells.iter().flat_map(|cell| bricks_of_cell(*cell)).collect();
         let common: Vec<Vec<(usize, u8)>> = bricks.par_iter().map(|brick| self.common(*brick)).collect();
         watch.check()?;
         self.bricks.par_iter_mut().zip(common).for_each(|(known, common)| {
-            if let Known::Sampled { samples, slope, .. } = known {
+            if let Known::Sampled { samples, .. } = known {
                 common.iter().for_each(|(index, sample)| samples[*index] = *sample);
-                *slope = BrickContent::slope(samples);
             }
         });
         watch.advance(0.05);
@@ -213,11 +217,6 @@ fn bricks_of_cell(cell: [u32; 3]) -> impl Iterator<Item = [u32; 3]> {
         let own = [i % side, i / side % side, i / (side * side)];
         [0, 1, 2].map(|axis| cell[axis] * CELL_BRICKS + own[axis] as u32)
     })
-}
-
-/// The steps to all neighbors, and none.
-fn around() -> impl Iterator<Item = [i32; 3]> {
-    (0..27).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1])
 }
 
 fn joined([x, y, z]: [usize; 3], size: [usize; 3]) -> usize {

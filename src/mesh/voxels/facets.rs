@@ -1,6 +1,6 @@
-//! Triangles in units of voxels, and which of them is nearest.
+//! Triangles in units of the finest voxels, which of them is nearest, and the same in voxels of coarser levels.
 
-use glam::Vec3;
+use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
 /// No triangle.
@@ -18,7 +18,7 @@ const ORDER_BITS: u32 = 21;
 pub(super) struct Facets {
     corners: Vec<[Vec3; 3]>,
     /// The triangle of the mesh; [`NONE`] for one that closes a hole.
-    pub sources: Vec<u32>,
+    sources: Vec<u32>,
     /// The lowest and highest corners of the nodes; the first is unused.
     boxes: Vec<[Vec3; 2]>,
 }
@@ -58,13 +58,8 @@ impl Facets {
         Some(first.min(self.corners.len())..(first + LEAF).min(self.corners.len()))
     }
 
-    /// The nearest triangle within the square root of `within`, and the square of its distance.
-    pub fn nearest(&self, p: Vec3, within: f32) -> Option<(f32, u32)> {
-        self.nearest_of(p, within, |_| true)
-    }
-
-    /// The same among some of the triangles.
-    pub fn nearest_of(&self, p: Vec3, within: f32, is_one: impl Fn(u32) -> bool) -> Option<(f32, u32)> {
+    /// The nearest of some triangles within the square root of `within`, and the square of its distance.
+    fn nearest_of(&self, p: Vec3, within: f32, is_one: impl Fn(u32) -> bool) -> Option<(f32, u32)> {
         let (mut best, mut found) = (within, NONE);
         // Boxes are compared with a little less than their distance, since they are rounded in other ways.
         let away = |node: usize| {
@@ -110,7 +105,7 @@ impl Facets {
     }
 
     /// Calls `found` with all triangles whose boxes meet this one.
-    pub fn within(&self, low: Vec3, high: Vec3, mut found: impl FnMut(u32)) {
+    fn within(&self, low: Vec3, high: Vec3, mut found: impl FnMut(u32)) {
         let meets = |[least, most]: [Vec3; 2]| least.cmple(high).all() && most.cmpge(low).all();
         let mut open = Vec::with_capacity(64);
         if !self.boxes.is_empty() {
@@ -130,25 +125,100 @@ impl Facets {
         }
     }
 
-    /// The box of a triangle.
-    pub fn extent(&self, triangle: u32) -> [Vec3; 2] {
-        extent(&self.corners[triangle as usize])
-    }
-
     /// The square of the distance from a triangle.
-    pub fn distance_squared(&self, triangle: u32, p: Vec3) -> f32 {
+    fn distance_squared(&self, triangle: u32, p: Vec3) -> f32 {
         p.distance_squared(self.point(triangle, self.weights(triangle, p)))
     }
 
     /// The barycentric weights of the point of a triangle that is nearest to `p`.
-    pub fn weights(&self, triangle: u32, p: Vec3) -> [f32; 3] {
+    fn weights(&self, triangle: u32, p: Vec3) -> [f32; 3] {
         nearest_weights(&self.corners[triangle as usize], p)
     }
 
     /// The point of a triangle with these weights.
-    pub fn point(&self, triangle: u32, weights: [f32; 3]) -> Vec3 {
+    fn point(&self, triangle: u32, weights: [f32; 3]) -> Vec3 {
         let [a, b, c] = self.corners[triangle as usize];
         a * weights[0] + b * weights[1] + c * weights[2]
+    }
+}
+
+/// The same triangles in voxels of a coarser level.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LevelFacets<'a> {
+    facets: &'a Facets,
+    scale: LevelScale,
+}
+
+/// Where the voxels of a level lie among those of the finest one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LevelScale {
+    /// The size of a voxel.
+    pub step: i32,
+    /// The first sample.
+    pub first: IVec3,
+}
+
+impl LevelScale {
+    /// A sample of the finest level.
+    pub fn sample(&self, own: [i32; 3]) -> [i32; 3] {
+        (IVec3::from(own) * self.step + self.first).to_array()
+    }
+
+    fn from_own(&self, p: Vec3) -> Vec3 {
+        p * self.step as f32 + self.first.as_vec3()
+    }
+
+    fn to_own(&self, p: Vec3) -> Vec3 {
+        (p - self.first.as_vec3()) / self.step as f32
+    }
+
+    fn area(&self) -> f32 {
+        (self.step * self.step) as f32
+    }
+}
+
+impl<'a> LevelFacets<'a> {
+    pub fn new(facets: &'a Facets, scale: LevelScale) -> Self {
+        Self { facets, scale }
+    }
+
+    pub fn nearest(&self, p: Vec3, within: f32) -> Option<(f32, u32)> {
+        self.nearest_of(p, within, |_| true)
+    }
+
+    pub fn nearest_of(&self, p: Vec3, within: f32, is_one: impl Fn(u32) -> bool) -> Option<(f32, u32)> {
+        let area = self.scale.area();
+        let found = self.facets.nearest_of(self.scale.from_own(p), within * area, is_one);
+        found.map(|(squared, triangle)| (squared / area, triangle))
+    }
+
+    pub fn within(&self, low: Vec3, high: Vec3, found: impl FnMut(u32)) {
+        self.facets.within(self.scale.from_own(low), self.scale.from_own(high), found);
+    }
+
+    pub fn extent(&self, triangle: u32) -> [Vec3; 2] {
+        extent(&self.facets.corners[triangle as usize]).map(|p| self.scale.to_own(p))
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.facets.corners[triangle as usize].map(|p| self.scale.to_own(p))
+    }
+
+    /// The triangle of the mesh; [`NONE`] for one that closes a hole.
+    pub fn source(&self, triangle: u32) -> u32 {
+        self.facets.sources[triangle as usize]
+    }
+
+    pub fn distance_squared(&self, triangle: u32, p: Vec3) -> f32 {
+        let p = self.scale.from_own(p);
+        p.distance_squared(self.facets.point(triangle, self.facets.weights(triangle, p))) / self.scale.area()
+    }
+
+    /// The barycentric weights of the point of a triangle that is nearest to `p`, and this point.
+    pub fn foot(&self, triangle: u32, p: Vec3) -> ([f32; 3], Vec3) {
+        let weights = self.facets.weights(triangle, self.scale.from_own(p));
+        (weights, self.scale.to_own(self.facets.point(triangle, weights)))
     }
 }
 

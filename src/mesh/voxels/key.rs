@@ -5,7 +5,7 @@ use isolith_bricks::{ContentHash, ContentKey};
 use super::super::TriangleMesh;
 
 /// Changes with what is made of the same mesh.
-const MAKER: u64 = 2;
+const MAKER: u64 = 3;
 
 /// The key of the bricks of a mesh: its triangles, its looks and the size of voxels.
 pub fn bricks_key(mesh: &TriangleMesh, voxel: f64) -> ContentKey {

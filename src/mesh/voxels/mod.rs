@@ -8,6 +8,7 @@
 //! | `facets` | triangles in voxels, and the nearest of them |
 //! | `samples` | the samples of a brick |
 //! | `content` | all bricks near the surface |
+//! | `detail` | which of them tell more than those of the next coarser level |
 //! | `paint` | the looks of the samples around the surface |
 //! | `key` | what bricks are made of, for files of them |
 //! | `watch` | progress and cancellation |
@@ -16,6 +17,7 @@
 
 mod columns;
 mod content;
+mod detail;
 mod facets;
 mod key;
 mod paint;
@@ -27,10 +29,14 @@ mod watch;
 pub use key::bricks_key;
 pub use resolution::{usual_resolution, voxel_for};
 
+use std::sync::Arc;
+
 use super::TriangleMesh;
 use columns::Columns;
 use content::Contents;
-use isolith_bricks::{BrickContent, BrickError, BrickGrid, Bricks, CELL_VOXELS, MAX_BRICK_TEXELS, RESOLUTIONS, encode};
+use detail::Detail;
+use facets::LevelScale;
+use isolith_bricks::{BrickError, BrickGrid, BrickSource, Bricks, CELL_VOXELS, MAX_BRICK_TEXELS, encode, in_levels};
 use isolith_geometry::Aabb;
 use paint::painted;
 use samples::{Distances, SHEET_HALF};
@@ -40,22 +46,26 @@ use watch::{Watch, watched};
 /// Bricks, and what their maker has to say of the mesh.
 #[derive(Debug)]
 pub struct Voxelized {
-    /// The bricks.
-    pub bricks: Bricks,
+    /// The bricks of the finest level, with all coarser ones.
+    pub bricks: Arc<Bricks>,
     /// What is not as the mesh says, as texts for the user.
     pub remarks: Vec<String>,
 }
 
-/// Bricks of a mesh. `progress` is told the share that is done at least every 100 ms, and stops the work by returning
-/// false.
+/// Bricks of a mesh in one size of voxels, all of them. `progress` is told the share that is done at least every 100 ms, and
+/// stops the work by returning false.
 ///
 /// # Errors
 /// There are too many, the mesh has no triangles with an area, or `progress` returned false.
 pub fn bricks_of(mesh: &TriangleMesh, voxel: f64, progress: &mut dyn FnMut(f32) -> bool) -> Result<Bricks, BrickError> {
-    voxelized(mesh, voxel, progress).map(|made| made.bricks)
+    watched(progress, |watch| {
+        let maker = Maker::new(mesh, voxel, watch)?;
+        watch.begin(1.0);
+        maker.level(voxel, None)
+    })
 }
 
-/// The same, with remarks.
+/// Bricks of a mesh in voxels of this size and all coarser ones, each level without what the next one tells, and remarks.
 ///
 /// # Errors
 /// As [`bricks_of`].
@@ -64,68 +74,78 @@ pub fn voxelized(
     voxel: f64,
     progress: &mut dyn FnMut(f32) -> bool,
 ) -> Result<Voxelized, BrickError> {
-    watched(progress, |watch| made(mesh, voxel, watch))
-}
-
-fn made(mesh: &TriangleMesh, voxel: f64, watch: &Watch) -> Result<Voxelized, BrickError> {
-    let bounds = mesh.bounds;
-    if !(voxel > 0.0 && voxel.is_finite()) {
-        return Err(BrickError::Voxel);
-    }
-    if bounds.is_empty() || !bounds.is_finite() {
-        return Err(BrickError::Empty);
-    }
-    let across = (2.0 * bounds.half()).max_element() / voxel;
-    // A little more than the limit, for sizes that were rounded.
-    if across > f64::from(RESOLUTIONS[1]) * 1.001 {
-        return Err(BrickError::TooFine { voxels: across.min(1e18) as u64 });
-    }
-    let bounds = bounds.expanded(f64::from(SHEET_HALF) * voxel);
-    let grid = BrickGrid::around(&bounds, voxel);
-    let least = grid.cell_count() + grid.cell_count().div_ceil(4);
-    if least > MAX_BRICK_TEXELS {
-        return Err(BrickError::TooLarge { texels: least });
-    }
-    let solid = Solid::new(mesh, &grid);
-    watch.advance(0.15);
-    watch.check()?;
-    if solid.closed.is_empty() && solid.thin.is_empty() {
-        return Err(BrickError::Empty);
-    }
-    let size = [0, 1].map(|i| (grid.cells[i] * CELL_VOXELS) as usize + 1);
-    let columns = Columns::new(size, &solid.chain);
-    watch.advance(0.05);
-    let distances = Distances { solid: &solid, columns };
-    let (mut bricks, order) = encoded(grid, bounds, &Contents::new(grid, &distances, watch)?, watch)?;
-    if mesh.has_looks() {
-        bricks.looks = Some(painted(mesh, &bricks, &order, &distances, watch)?);
-    }
-    let mut remarks = Vec::new();
-    if solid.has_sheets {
-        remarks.push(format!(
-            "has surfaces that bound no space; they get a thickness of {} voxels, {:.3} mm",
-            2.0 * SHEET_HALF,
-            2e3 * f64::from(SHEET_HALF) * voxel
-        ));
-    }
-    Ok(Voxelized { bricks, remarks })
-}
-
-/// The bricks, and those with samples in their order.
-fn encoded(
-    grid: BrickGrid,
-    bounds: Aabb,
-    contents: &Contents,
-    watch: &Watch,
-) -> Result<(Bricks, Vec<[u32; 3]>), BrickError> {
-    let mut order = Vec::new();
-    let bricks = encode(grid, bounds, &mut |corner| contents.corner(corner) * grid.voxel, &mut |brick| {
-        watch.check()?;
-        let content = contents.brick(brick);
-        if matches!(content, BrickContent::Near { .. }) {
-            order.push(brick);
+    watched(progress, |watch| {
+        let maker = Maker::new(mesh, voxel, watch)?;
+        let bricks = in_levels(&mesh.bounds, voxel, &mut |own, coarser| {
+            // A level takes about four times as long as the next coarser one.
+            watch.begin(0.75 * (voxel / own).powi(2));
+            maker.level(own, coarser)
+        })?;
+        let mut remarks = Vec::new();
+        if maker.solid.has_sheets {
+            remarks.push(format!(
+                "has surfaces that bound no space; they get a thickness of {} voxels, {:.3} mm",
+                2.0 * SHEET_HALF,
+                2e3 * f64::from(SHEET_HALF) * voxel
+            ));
         }
-        Ok(content)
-    })?;
-    Ok((bricks, order))
+        Ok(Voxelized { bricks, remarks })
+    })
+}
+
+/// What all levels are made of, in units of the finest voxels.
+struct Maker<'a> {
+    mesh: &'a TriangleMesh,
+    solid: Solid,
+    columns: Columns,
+    finest: BrickGrid,
+    watch: &'a Watch,
+}
+
+impl<'a> Maker<'a> {
+    fn new(mesh: &'a TriangleMesh, voxel: f64, watch: &'a Watch) -> Result<Self, BrickError> {
+        BrickGrid::checked(&mesh.bounds, voxel)?;
+        let finest = BrickGrid::around(&bounds_of(mesh, voxel), voxel);
+        let least = finest.cell_count() + finest.cell_count().div_ceil(4);
+        if least > MAX_BRICK_TEXELS {
+            return Err(BrickError::TooLarge { texels: least });
+        }
+        watch.begin(1.0);
+        let solid = Solid::new(mesh, &finest);
+        watch.advance(0.15);
+        watch.check()?;
+        if solid.is_empty() {
+            return Err(BrickError::Empty);
+        }
+        let size = [0, 1].map(|i| (finest.cells[i] * CELL_VOXELS) as usize + 1);
+        let columns = Columns::new(size, &solid.chain);
+        watch.advance(0.05);
+        Ok(Self { mesh, solid, columns, finest, watch })
+    }
+
+    /// The bricks of a level that `coarser` does not stand in for.
+    fn level(&self, voxel: f64, coarser: Option<Arc<Bricks>>) -> Result<Bricks, BrickError> {
+        // All levels have the same surface, of the same thickness.
+        let bounds = bounds_of(self.mesh, self.finest.voxel);
+        let grid = BrickGrid::around(&bounds, voxel);
+        let first = ((grid.origin - self.finest.origin) / self.finest.voxel).round().as_ivec3();
+        let scale = LevelScale { step: (voxel / self.finest.voxel).round() as i32, first };
+        let distances = Distances::new(&self.solid, &self.columns, scale);
+        let (mesh, has_looks, finest) = (self.mesh, self.mesh.has_looks(), self.finest.voxel);
+        let detail = coarser.as_deref().map(|coarser| Detail { mesh, has_looks, coarser, finest });
+        let contents = Contents::new(grid, &distances, detail, self.watch)?;
+        let corner = |corner: [u32; 3]| contents.corner(corner) * grid.voxel;
+        let brick = |brick: [u32; 3]| contents.brick(brick);
+        let source = BrickSource { grid, bounds, coarser: coarser.clone(), corner: &corner, brick: &brick };
+        let (mut bricks, order) = encode(source)?;
+        if has_looks {
+            bricks.looks = Some(painted(self.mesh, &bricks, &order, &distances, self.watch)?);
+        }
+        Ok(bricks)
+    }
+}
+
+/// A box around the surface: sheets have a thickness.
+fn bounds_of(mesh: &TriangleMesh, voxel: f64) -> Aabb {
+    mesh.bounds.expanded(f64::from(SHEET_HALF) * voxel)
 }

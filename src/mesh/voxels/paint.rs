@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3, DVec4, Vec3};
 use rayon::prelude::*;
 
 use super::super::TriangleMesh;
-use super::facets::{Facets, NONE};
-use super::samples::{Distances, SHEET_HALF};
+use super::facets::{LevelFacets, NONE};
+use super::samples::Distances;
 use super::watch::Watch;
 use isolith_bricks::{
     BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, Bricks, Looks, VoxelLook, linear_from_srgb,
@@ -34,7 +34,7 @@ pub(super) fn painted(
     let of = |brick: &[u32; 3]| {
         watch.check()?;
         watch.advance(share);
-        let Some(BrickContent::Near { samples, .. }) = bricks.content(*brick) else {
+        let Some(BrickContent::Samples(samples)) = bricks.content(*brick) else {
             return Ok(([false; BRICK_VOLUME], Vec::new()));
         };
         Ok(painter.brick(*brick, &samples))
@@ -76,13 +76,13 @@ impl Painter<'_> {
     /// The look of the nearest point of the mesh, which lids are no part of.
     fn sample(&self, sample: [u32; 3]) -> VoxelLook {
         let p = Vec3::from(sample.map(|n| n as f32));
-        let solid = self.distances.solid;
-        let is_inside = self.distances.columns.is_inside(sample.map(|n| n as i32));
+        let is_inside = self.distances.is_inside(sample.map(|n| n as i32));
         let side = if is_inside { -1.0 } else { 1.0 };
         let value = |foot: &Option<Foot>| foot.as_ref().map_or(f32::INFINITY, |foot| foot.squared.sqrt());
-        let (closed, thin) = (foot(&solid.closed, p), foot(&solid.thin, p));
+        let (closed, thin) = (foot(self.distances.closed(), p), foot(self.distances.thin(), p));
         // As distances are: the lesser of the two.
-        let is_thin = thin.is_some() && (closed.is_none() || value(&thin) - SHEET_HALF < side * value(&closed));
+        let is_thin =
+            thin.is_some() && (closed.is_none() || value(&thin) - self.distances.sheet_half() < side * value(&closed));
         let side = if is_thin { 1.0 } else { side };
         // Nothing but lids.
         let Some(foot) = (if is_thin { thin } else { closed }) else {
@@ -112,11 +112,10 @@ impl Painter<'_> {
     }
 }
 
-fn foot(facets: &Facets, p: Vec3) -> Option<Foot> {
-    let is_mesh = |triangle: u32| facets.sources[triangle as usize] != NONE;
+fn foot(facets: LevelFacets<'_>, p: Vec3) -> Option<Foot> {
+    let is_mesh = |triangle: u32| facets.source(triangle) != NONE;
     let near = facets.nearest_of(p, NEAR * NEAR, is_mesh);
     let (squared, triangle) = near.or_else(|| facets.nearest_of(p, f32::INFINITY, is_mesh))?;
-    let weights = facets.weights(triangle, p);
-    let to_sample = p - facets.point(triangle, weights);
-    Some(Foot { triangle: facets.sources[triangle as usize], weights: weights.map(f64::from), to_sample, squared })
+    let (weights, point) = facets.foot(triangle, p);
+    Some(Foot { triangle: facets.source(triangle), weights: weights.map(f64::from), to_sample: p - point, squared })
 }

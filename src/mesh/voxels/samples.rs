@@ -3,11 +3,11 @@
 use glam::{UVec3, Vec3};
 
 use super::columns::Columns;
-use super::facets::{Facets, NONE};
+use super::facets::{LevelFacets, LevelScale, NONE};
 use super::solid::Solid;
 use isolith_bricks::{BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickGrid, SAMPLE_REACH};
 
-/// Half the thickness of sheets, in voxels. With only half a voxel one could lie between two layers of samples, and both
+/// Half the thickness of sheets, in the finest voxels. With only half a voxel one could lie between two layers of samples, and both
 /// would measure 0.
 pub(super) const SHEET_HALF: f32 = 0.75;
 /// Half the diagonal of a brick, in voxels.
@@ -15,12 +15,17 @@ pub(super) const HALF_DIAGONAL: f32 = 6.062_178;
 /// Up to this far from a triangle all samples around it are compared with it: the corners of the voxels that the surface
 /// passes. Those farther away look for the nearest in the hierarchy, from what their neighbors found.
 const EXACT: f32 = 1.75;
+/// Beyond this many triangles in a brick none is compared with all samples around it.
+const CROWDED: usize = 1_500;
 const SIDE: usize = BRICK_SAMPLES;
 
-/// The distances of a solid, in voxels.
+/// The distances of a solid in the voxels of a level.
 pub(super) struct Distances<'a> {
-    pub solid: &'a Solid,
-    pub columns: Columns,
+    solid: &'a Solid,
+    columns: &'a Columns,
+    scale: LevelScale,
+    /// Half the thickness of sheets, in voxels.
+    sheet_half: f32,
 }
 
 /// A brick with samples.
@@ -33,16 +38,45 @@ pub(super) struct Sampled {
 /// A brick's distances without sign; infinite where they are beyond what samples hold.
 type Band = [f32; BRICK_VOLUME];
 
-impl Distances<'_> {
+impl<'a> Distances<'a> {
+    pub fn new(solid: &'a Solid, columns: &'a Columns, scale: LevelScale) -> Self {
+        Self { solid, columns, scale, sheet_half: SHEET_HALF / scale.step as f32 }
+    }
+
+    /// The triangles of closed pieces.
+    pub fn closed(&self) -> LevelFacets<'_> {
+        LevelFacets::new(&self.solid.closed, self.scale)
+    }
+
+    /// Those of sheets and of what is thin.
+    pub fn thin(&self) -> LevelFacets<'_> {
+        LevelFacets::new(&self.solid.thin, self.scale)
+    }
+
+    /// Half the thickness of sheets, in voxels.
+    pub fn sheet_half(&self) -> f32 {
+        self.sheet_half
+    }
+
+    /// Whether anything is thin.
+    pub fn has_thin(&self) -> bool {
+        !self.solid.thin.is_empty()
+    }
+
+    /// Whether a sample lies inside a closed piece.
+    pub fn is_inside(&self, sample: [i32; 3]) -> bool {
+        self.columns.is_inside(self.scale.sample(sample))
+    }
+
     /// The distance at a point, in voxels, that lies on the same side as this sample and is at most `within` far from the
     /// surface; infinite if that is not known.
     pub fn at(&self, p: Vec3, sample: [u32; 3], within: f32) -> f32 {
-        let away = |facets: &Facets, within: f32| {
+        let away = |facets: LevelFacets<'_>, within: f32| {
             facets.nearest(p, within * within).map_or(f32::INFINITY, |(squared, _)| squared.sqrt())
         };
-        let closed = away(&self.solid.closed, within);
-        let closed = if self.columns.is_inside(sample.map(|n| n as i32)) { -closed } else { closed };
-        let thin = away(&self.solid.thin, within.min(closed.abs()) + 2.0 * SHEET_HALF) - SHEET_HALF;
+        let closed = away(self.closed(), within);
+        let closed = if self.is_inside(sample.map(|n| n as i32)) { -closed } else { closed };
+        let thin = away(self.thin(), within.min(closed.abs()) + 2.0 * self.sheet_half) - self.sheet_half;
         closed.min(thin)
     }
 
@@ -50,11 +84,11 @@ impl Distances<'_> {
     pub fn sampled(&self, brick: [u32; 3]) -> Sampled {
         let first = brick.map(|n| n * BRICK_VOXELS);
         let reach = SAMPLE_REACH as f32;
-        let mut values = band(&self.solid.closed, first, reach);
+        let mut values = band(self.closed(), first, reach);
         self.sign(first, &mut values);
-        if !self.solid.thin.is_empty() {
-            let thin = band(&self.solid.thin, first, reach + SHEET_HALF);
-            values.iter_mut().zip(thin).for_each(|(value, thin)| *value = value.min(thin - SHEET_HALF));
+        if self.has_thin() {
+            let thin = band(self.thin(), first, reach + self.sheet_half);
+            values.iter_mut().zip(thin).for_each(|(value, thin)| *value = value.min(thin - self.sheet_half));
         }
         let least = values.iter().fold(reach, |least, value| least.min(value.abs()));
         Sampled { samples: Box::new(values.map(|value| BrickContent::sample_byte(f64::from(value)))), least }
@@ -70,8 +104,9 @@ impl Distances<'_> {
         for (y, row) in inside.iter_mut().enumerate() {
             for (x, bits) in row.iter_mut().enumerate() {
                 let (column_x, column_y) = (around[0] + x as i32, around[1] + y as i32);
-                if !self.columns.is_empty(column_x, column_y) {
-                    let is_inside = |z: usize| self.columns.is_inside([column_x, column_y, around[2] + z as i32]);
+                let [x, y, _] = self.scale.sample([column_x, column_y, 0]);
+                if !self.columns.is_empty(x, y) {
+                    let is_inside = |z: usize| self.is_inside([column_x, column_y, around[2] + z as i32]);
                     *bits = (0..WIDE).fold(0, |bits, z| bits | u16::from(is_inside(z)) << z);
                 }
                 (any, all) = (any | *bits, all & *bits);
@@ -104,7 +139,7 @@ impl Distances<'_> {
 }
 
 /// The distances of a brick's samples from the triangles, up to `reach`.
-fn band(facets: &Facets, first: [u32; 3], reach: f32) -> Band {
+fn band(facets: LevelFacets<'_>, first: [u32; 3], reach: f32) -> Band {
     let mut band = [f32::INFINITY; BRICK_VOLUME];
     let origin = UVec3::from(first).as_vec3();
     let middle = Vec3::splat(0.5 * BRICK_VOXELS as f32);
@@ -126,18 +161,22 @@ fn band(facets: &Facets, first: [u32; 3], reach: f32) -> Band {
 
 /// The nearest triangles found so far.
 struct Nearest<'a> {
-    facets: &'a Facets,
+    facets: LevelFacets<'a>,
     origin: Vec3,
     squared: [f32; BRICK_VOLUME],
     ids: [u32; BRICK_VOLUME],
 }
 
 impl Nearest<'_> {
-    /// Compares the samples around each triangle with it.
+    /// Compares the samples around each triangle with it, if there are not too many.
     fn compare_all(&mut self) {
         let mut found = Vec::new();
         let high = self.origin + BRICK_VOXELS as f32 + EXACT;
         self.facets.within(self.origin - EXACT, high, |triangle| found.push(triangle));
+        // Of so many a search for each sample finds the nearest sooner.
+        if found.len() > CROWDED {
+            return;
+        }
         let last = (SIDE - 1) as f32;
         for triangle in found {
             let [low, high] = self.facets.extent(triangle);

@@ -83,6 +83,11 @@ impl Solid {
         let (closed, thin) = rayon::join(|| Facets::new(solid), || Facets::new(thin));
         Self { closed, chain, thin, has_sheets }
     }
+
+    /// Whether nothing has an area.
+    pub fn is_empty(&self) -> bool {
+        self.closed.is_empty() && self.thin.is_empty()
+    }
 }
 
 /// The distinct corners, in whole numbers from the first sample, and the triangles of the mesh by them.

@@ -15,12 +15,20 @@ pub(super) struct Watch {
     is_canceled: AtomicBool,
     /// Of a million.
     done: AtomicU32,
+    /// The share that the work under way has of all, in a million.
+    part: AtomicU32,
 }
 
 impl Watch {
-    /// Adds a share of the whole work.
+    /// What comes next has this share of the whole work.
+    pub fn begin(&self, part: f64) {
+        self.part.store((part * 1e6) as u32, Ordering::Relaxed);
+    }
+
+    /// Adds a share of what is under way.
     pub fn advance(&self, share: f64) {
-        self.done.fetch_add((share * 1e6) as u32, Ordering::Relaxed);
+        let part = f64::from(self.part.load(Ordering::Relaxed));
+        self.done.fetch_add((share * part) as u32, Ordering::Relaxed);
     }
 
     /// Ends canceled work.
