@@ -330,6 +330,7 @@ impl Renderer {
         assert!(self.resources.counts.is_on || !view_mode.counts(), "{} needs pipelines that count", view_mode.name());
         frame.view_mode = view_mode;
         if view_mode != ViewMode::Shaded {
+            self.resources.show_first_surfaces(&self.gpu);
             let Gpu { device, queue, .. } = &self.gpu;
             self.passes.debug_view.prepare((device, queue), flat, view_mode, depth_range);
         }

@@ -65,7 +65,8 @@ impl ShadowPass {
         Ok(())
     }
 
-    /// Whether the pipelines for a scene are there. If not, they are built beside the frames.
+    /// Whether the pipelines for a scene are there. If not, they are built beside the frames; what fails there is built again by
+    /// the frame, which reports why.
     pub fn is_ready(&mut self, gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Options) -> bool {
         let has = |one: &ShadowPipelines| used.iter().zip(&one.pipelines).all(|(used, own)| !used || own.is_some());
         // Samples of a still follow rays to the environment with the pipeline of the lights.

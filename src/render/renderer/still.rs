@@ -82,9 +82,6 @@ impl Renderer {
         progress: &mut dyn FnMut(f32) -> bool,
     ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
         let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        if view_mode != ViewMode::Shaded {
-            self.resources.show_first_surfaces(&self.gpu);
-        }
         self.debug_view(&mut frame, view_mode, flat, &DepthRange::of(&flat.content(meshes), camera.position))?;
         while !frame.is_done() {
             if !progress(frame.progress()) {
