@@ -1,5 +1,7 @@
 //! Shadows and occlusion of every second pixel along each axis, as a window has them while something moves.
 
+#![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
+
 use std::time::Duration;
 
 use isolith::field::{GBuffer, flatten};

@@ -1,5 +1,7 @@
 //! What rays pass: blended and cut-out materials of fields, against the reference and against what the opacity says.
 
+#![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
+
 use std::collections::HashSet;
 
 use glam::{DQuat, DVec2, DVec3};
