@@ -207,7 +207,8 @@ fn mesh_normal(in: Varying) -> vec3f {
 
 // The opacity above which the fragment covers this sample of its pixel.
 fn mesh_threshold(in: Varying) -> f32 {
-    return coverage_threshold(vec2u(in.clip.xy), view.sample_index, in.vertex + coverage_hash(instance.visibility));
+    let threshold = coverage_threshold(vec2u(in.clip.xy), view.sample_index, in.vertex + coverage_hash(instance.visibility));
+    return select(threshold, 0.0, view.first_surfaces == 1u);
 }
 
 // `surface` is metalness, roughness and the share of the ambient light that arrives.

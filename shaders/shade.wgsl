@@ -110,7 +110,16 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
 #if TEXTURES
         normal = textured_normal(normal, mixture_bend);
 #end
-        let point = brdf_point(material, direction * depth, normal, -direction);
+        var to_eye = -direction;
+#if VEILS
+        // Rays that pass surfaces meet others from within, and see the light of the side without.
+        let is_within = !is_mesh && dot(surface_normal, direction) > 0.0;
+        to_eye = select(to_eye, to_eye - 2.0 * dot(to_eye, surface_normal) * surface_normal, is_within);
+#end
+#if SPARSE_SHARES
+        shares_find(pixel, depth, surface_normal);
+#end
+        let point = brdf_point(material, direction * depth, normal, to_eye);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
         let light_count = select(view.light_count, 0u, depth >= BACKGROUND);

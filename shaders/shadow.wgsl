@@ -41,7 +41,7 @@
 
 @compute @workgroup_size(8, 8)
 fn shadow(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = dispatch.origin + id.xy;
+    let pixel = dispatch.origin + id.xy * settings.spacing;
     let exists = all(pixel < dispatch.end);
     let own = shadow_place(id.xy, 0u);
     let first = (pixel.y * view.width + pixel.x) * settings.stride;

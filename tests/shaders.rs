@@ -8,7 +8,7 @@ use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits, ShadowSettings};
 use isolith::scene::ShapeKind;
 use isolith::wgsl::{
-    Evaluator, FILES, OpSet, Options, SCENE_COPIES, ShapeSet, SkipMode, Structure, assemble, assemble_featured,
+    Evaluator, FILES, OpSet, Options, SCENE_COPIES, ShapeSet, SkipMode, Structure, Veil, assemble, assemble_featured,
     assemble_with, fits_templates,
 };
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -49,7 +49,8 @@ fn sources() -> Vec<(&'static str, String)> {
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
     let shadowed = Options { shadowed: true, ..Options::default() };
-    let shade = assemble("shade.wgsl", &all[0], shadowed).unwrap_or_else(|error| panic!("{error}"));
+    let shade =
+        assemble_with("shade.wgsl", &all[0], shadowed, &["FULL_SHARES"]).unwrap_or_else(|error| panic!("{error}"));
     let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
     let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS"]);
     let meshes = meshes.unwrap_or_else(|error| panic!("{error}"));
@@ -62,11 +63,26 @@ fn sources() -> Vec<(&'static str, String)> {
         let text = |evaluator| assemble(pass, evaluator, with_copies).unwrap_or_else(|error| panic!("{error}"));
         all.each_ref().map(|evaluator| (pass, text(evaluator)))
     });
+    let veils = [(Veil::Plain, false), (Veil::Textured, false), (Veil::Plain, true), (Veil::Textured, true)];
+    let veiled = veils.into_iter().flat_map(|(veil, copies)| {
+        let options = Options { veil, copies, ..Options::default() };
+        let text = |evaluator| assemble("trace.wgsl", evaluator, options).unwrap_or_else(|error| panic!("{error}"));
+        [&all[0], &all[1]].map(|evaluator| ("trace.wgsl", text(evaluator)))
+    });
+    let lit = [&["VEILS", "FULL_SHARES"], &["VEILS", "SPARSE_SHARES"]].map(|features| {
+        let text = assemble_with("shade.wgsl", &all[0], shadowed, features);
+        ("shade.wgsl", text.unwrap_or_else(|error| panic!("{error}")))
+    });
+    let dimmed = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS", SCENE_COPIES, "VEILS"]);
+    let dimmed = dimmed.unwrap_or_else(|error| panic!("{error}"));
     let shown = assemble_featured("shade.wgsl", &["COPIES"]).unwrap_or_else(|error| panic!("{error}"));
     plain
         .chain(of_copies)
         .chain(among)
+        .chain(veiled)
+        .chain(lit)
         .chain([
+            ("shadow.wgsl", dimmed),
             ("shade.wgsl", shown),
             ("shade.wgsl", textured()),
             ("shade.wgsl", carried()),
@@ -232,7 +248,7 @@ fn view() -> Layout {
             exposure,
             sample_index,
             transparent,
-            padding_0,
+            first_surfaces,
             padding_1,
             padding_2
         }
@@ -265,7 +281,7 @@ fn dispatch_params() -> Layout {
 fn shadow_settings() -> Layout {
     layout!(
         "ShadowSettings" =
-            ShadowSettings { lights, stride, cones, sample, fineness, occlusion_radius, occlusion_strength, padding }
+            ShadowSettings { lights, stride, cones, sample, fineness, occlusion_radius, occlusion_strength, spacing }
     )
 }
 
@@ -287,7 +303,11 @@ fn flat_material() -> Layout {
             diffuse_roughness,
             phong_weight,
             phong_specular,
-            phong_shininess
+            phong_shininess,
+            opacity,
+            opacity_threshold,
+            padding_0,
+            padding_1
         }
     )
 }
@@ -340,7 +360,11 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 ray_origin_depth,
                 flush,
                 flush_near,
-                kind
+                kind,
+                translucency,
+                padding_0,
+                padding_1,
+                padding_2
             }
         ),
         view(),

@@ -11,6 +11,13 @@
 // of a pixel there, the march tests whether the field is negative just behind its expected end.
 const CLOSE: f32 = 1e-3 * FINENESS;
 
+#if VEILED
+// Within a solid that the ray may leave, the field counts with its sign turned, as that of the space
+// around. The first evaluation of a march tells, if the march begins at a surface.
+var<private> march_side: f32 = 1.0;
+var<private> march_takes_side: bool = false;
+
+#end
 struct March {
     t: f32,
     hit: bool,
@@ -106,6 +113,11 @@ fn march_evaluate(state: ptr<function, MarchState>, ray: Ray, flush: f32, roundi
         lookahead_begin(t - last.x, LOOKAHEAD_WINDOW * (t - state.safe.x), rounding);
     }
     var f = field(ray_at(ray, t));
+#if VEILED
+    march_side = select(march_side, select(1.0, -1.0, f < 0.0), march_takes_side);
+    march_takes_side = false;
+    f *= march_side;
+#end
     // A negative field within `flush` is rounding, not material.
     f = select(f, 0.0, f < 0.0 && f >= -flush);
     // The stretch behind an overstep is free if the field there is no less than where the overstep

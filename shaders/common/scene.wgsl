@@ -37,6 +37,11 @@ struct Component {
     flush_near: f32,
     // Of the type of an instancer: its index among the types.
     kind: u32,
+    // Share of the light that passes it.
+    translucency: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 const GROUP: u32 = 0xffffu;

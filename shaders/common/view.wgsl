@@ -26,7 +26,8 @@ struct View {
     sample_index: u32,
     // 1: the background is without color and coverage.
     transparent: u32,
-    padding_0: u32,
+    // 1: whatever has any opacity covers all samples.
+    first_surfaces: u32,
     padding_1: u32,
     padding_2: u32,
 }

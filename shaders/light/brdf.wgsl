@@ -19,11 +19,16 @@ struct ShadingPoint {
 struct EnvironmentShares {
     // On the light that arrives from all around.
     diffuse: vec3f,
-    // On the light from about `direction`, blurred by `roughness`.
+    // How much more of it comes from the side of the eye: added to the mean direction.
+    lean: vec3f,
+    // On the light from about `dominant`, blurred by `roughness`.
     specular: vec3f,
     roughness: f32,
+    // Between the mirrored ray and the normal: most of what a rough surface reflects comes from there.
+    dominant: vec3f,
+    // Of the mirrored ray.
     direction: vec3f,
-    // The same of the coat.
+    // On the light from there, blurred by the roughness of the coat.
     coat: f32,
     coat_roughness: f32,
 }
@@ -66,16 +71,26 @@ fn brdf_ambient(point: ShadingPoint) -> vec3f {
     return shares.diffuse + shares.specular + shares.coat;
 }
 
-// The shares of the light of the environment: a split sum.
+// See the CPU's constant of this name.
+const LEAN: f32 = 0.5;
+
+// The shares of the light of the environment: a split sum. The dominant direction is that of Lagarde
+// and de Rousiers, "Moving Frostbite to Physically Based Rendering" (2014).
 fn brdf_environment(point: ShadingPoint) -> EnvironmentShares {
     var shares = EnvironmentShares();
     shares.diffuse = point.material.base_color * point.material.phong_weight;
     shares.direction = reflect(-point.to_eye, point.normal);
+    shares.dominant = shares.direction;
     if LAYERS {
         let weight = 1.0 - point.material.phong_weight;
         shares.diffuse += weight * point.layers.diffuse_albedo;
         shares.specular = weight * point.layers.specular_albedo;
         shares.roughness = sqrt(point.layers.alpha);
+        let smoothness = 1.0 - point.layers.alpha;
+        let mirrored = smoothness * (sqrt(smoothness) + point.layers.alpha);
+        shares.dominant = normalize(mix(point.normal, shares.direction, mirrored));
+        let side = point.to_eye - point.normal * dot(point.normal, point.to_eye);
+        shares.lean = side * (LEAN * weight * point.layers.diffuse_roughness);
         shares.coat = weight * point.layers.coat_albedo;
         shares.coat_roughness = sqrt(point.layers.coat_alpha);
     }

@@ -42,8 +42,8 @@ fn lighting_surface(point: ShadingPoint, pixel: vec2u, ambient: vec3f, open: f32
 fn lighting_around(point: ShadingPoint, free: vec3f, ambient: vec3f) -> vec3f {
     if IMAGE_LIT {
         let shares = brdf_environment(point);
-        return shares.diffuse * environment_irradiance(free)
-            + shares.specular * environment_reflected(shares.direction, shares.roughness)
+        return shares.diffuse * environment_irradiance(normalize(free + shares.lean))
+            + shares.specular * environment_reflected(shares.dominant, shares.roughness)
             + shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
     }
     return brdf_ambient(point) * environment_ambient(free.y, ambient);

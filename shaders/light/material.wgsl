@@ -18,6 +18,11 @@ struct FlatMaterial {
     phong_weight: f32,
     phong_specular: f32,
     phong_shininess: f32,
+    opacity: f32,
+    // Less opacity is cut out, and the rest is opaque; 0 for blended opacity.
+    opacity_threshold: f32,
+    padding_0: f32,
+    padding_1: f32,
 }
 
 #if TEXTURES

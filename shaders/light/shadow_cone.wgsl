@@ -118,6 +118,9 @@ fn shadow_point(pixel: vec2u) -> ShadowPoint {
 // by how much the field likely exceeds it. The only call of the field.
 fn shadow_field(component: Component, p: vec3f, reach: f32) -> vec2f {
     scene_visits += 1u;
+#if VEILS
+    cone_veil = component.translucency;
+#end
     // Where the bounds are outside of the cone, so is the component.
     let bound = length(max(max(component.low - p, p - component.high), vec3f(0.0)));
     if bound > reach {

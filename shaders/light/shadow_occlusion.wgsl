@@ -54,6 +54,9 @@ fn occlusion_sample(at: OcclusionPoint, march: OcclusionMarch) -> OcclusionSampl
 
 // Whether the bounds of the component meet the sphere.
 fn occlusion_meets(component: Component, sample: OcclusionSample) -> bool {
+#if VEILS
+    cone_veil = component.translucency;
+#end
     let plane = dot(component.half_space.xyz, sample.q) + component.half_space.w;
     let away = length(max(max(component.low - sample.q, sample.q - component.high), vec3f(0.0)));
     return max(away, plane) < sample.size * 0.999;
@@ -103,7 +106,11 @@ fn occlusion_meshes(at: OcclusionPoint, march: ptr<function, OcclusionMarch>) {
 }
 
 // Takes the ratio of field and radius into account.
-fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, ratio: f32) {
+fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, found: f32) {
+    var ratio = found;
+#if VEILS
+    ratio = mix(max(found, -1.0), 1.0, cone_veil);
+#end
     occlusion_lower(march, march.cone, ratio);
     let next = march.t * OCCLUSION_GROWTH;
     let is_over = next > at.far || ratio <= -1.0;
@@ -115,7 +122,7 @@ fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, rati
 // is open unless it has ended in another dispatch, which has stored its shares.
 @compute @workgroup_size(8, 8)
 fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = dispatch.origin + id.xy;
+    let pixel = dispatch.origin + id.xy * settings.spacing;
     var is_open = all(pixel < dispatch.end);
     let own = shadow_place(id.xy, 1u);
     let point = shadow_point(pixel);

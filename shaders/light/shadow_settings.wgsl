@@ -15,7 +15,8 @@ struct ShadowSettings {
     fineness: f32,
     occlusion_radius: f32,
     occlusion_strength: f32,
-    padding: f32,
+    // Pixels from one with shares to the next, along each axis: 1, or 2 while something moves.
+    spacing: u32,
 }
 
 // Words of the state of an unfinished pixel: of its shadows, and again of its occlusion. The last

@@ -16,8 +16,8 @@ struct FlatTexture {
 }
 
 struct TextureSet {
-    // Base color, roughness, normal, height.
-    slots: array<FlatTexture, 4>,
+    // Base color, roughness, normal, height, opacity.
+    slots: array<FlatTexture, 5>,
     base_weight: f32,
     sharpness: f32,
     strength: f32,

@@ -206,11 +206,20 @@ fn cone_step(cone: SceneCone, march: ptr<function, ConeMarch>, f: f32, slack: f3
     march.t = min(t + select(plain, wide, is_wide), exit);
 }
 
+#if VEILS
+// Share of the light that what is being marched lets pass.
+var<private> cone_veil: f32;
+
+#end
 // Ends the march through a component.
 fn cone_leave(cone: SceneCone, march: ptr<function, ConeMarch>) {
     let is_lit = (march.state & CONE_LIT) != 0u;
-    let is_dark = march.ratio == PROVEN_DARK;
-    let share = select(cone_share(march.ratio), 1.0, is_lit);
+    var is_dark = march.ratio == PROVEN_DARK;
+    var share = select(cone_share(march.ratio), 1.0, is_lit);
+#if VEILS
+    is_dark = is_dark && cone_veil == 0.0;
+    share = mix(share, 1.0, cone_veil);
+#end
     let all = select(min(march.share, share), march.share * share, cone.size < WIDE_SPREAD);
     march.share = select(all, 0.0, is_dark);
     let open = (march.state & CONE_KEPT) | select(CONE_UNPROVEN, 0u, is_lit);

@@ -76,10 +76,16 @@ impl Renderers {
         if !view_mode.counts() {
             self.counting = None;
         } else if self.counting.is_none() {
-            self.counting = Some(Renderer::counting(self.plain.gpu())?);
+            self.counting = Some(of_window(Renderer::counting(self.plain.gpu())?));
         }
         Ok(())
     }
+}
+
+/// No picture of a window waits for shadows.
+fn of_window(mut renderer: Renderer) -> Renderer {
+    renderer.set_late_shadows(true);
+    renderer
 }
 
 /// All inputs of the picture.
@@ -105,7 +111,7 @@ impl PartialEq for RenderRequest {
 impl ViewportRenderer {
     pub fn new(gpu: Gpu, state: RenderState) -> Result<Self, RenderError> {
         Ok(Self {
-            renderers: Renderers { plain: Renderer::new(&gpu)?, counting: None },
+            renderers: Renderers { plain: of_window(Renderer::new(&gpu)?), counting: None },
             state,
             textures: [None, None],
             shown: None,
@@ -168,7 +174,8 @@ impl ViewportRenderer {
     fn status(&self) -> String {
         let renderer = &self.renderers.plain;
         let name = short_name(&renderer.gpu().info.name);
-        status_text(name, self.elapsed, renderer.pipelines_building(), renderer.pipelines_failed())
+        let building = renderer.pipelines_building() + usize::from(renderer.awaits_shadows());
+        status_text(name, self.elapsed, building, renderer.pipelines_failed())
     }
 
     /// Advances the picture toward the editor's request, in bounded time.
@@ -195,11 +202,12 @@ impl ViewportRenderer {
         let news = self.follow_pipelines(editor, ctx);
         let settled = self.navigating && !navigating;
         self.navigating = navigating;
-        let is_other = self.request.as_ref() != Some(&request);
+        let has_shadows = self.follow_shadows(ctx);
+        let is_other = has_shadows || self.request.as_ref() != Some(&request);
         // Samples to come are worth the pipelines and tapes that have become ready.
         let is_faster = news && self.samples.wants_more(wanted);
         if is_other || is_faster || (self.waiting && (news || settled)) {
-            if self.differs_in_marks_only(&request) {
+            if !has_shadows && self.differs_in_marks_only(&request) {
                 self.restyle(&request, &meshes)?;
             } else {
                 self.start(&request, &meshes, is_other)?;
@@ -285,6 +293,14 @@ impl ViewportRenderer {
         }
         self.show(Slot::Full);
         Ok(())
+    }
+
+    /// Whether shadows have become ready that the picture lacks.
+    fn follow_shadows(&mut self, ctx: &egui::Context) -> bool {
+        if self.renderers.active().awaits_shadows() {
+            ctx.request_repaint_after(Duration::from_millis(200));
+        }
+        self.renderers.active().collect_shadows()
     }
 
     /// Polls pipelines and tapes in the making at a low rate, and reports failed pipelines.
@@ -376,21 +392,9 @@ impl ViewportRenderer {
         meshes: &[Option<Arc<TriangleMesh>>],
         size_px: [u32; 2],
     ) -> Result<Frame, RenderError> {
-        let RenderRequest {
-            view:
-                ViewSettings {
-                    camera,
-                    show_grid,
-                    grid: GridView { axis, cell, fades },
-                    view_mode,
-                    passes,
-                    has_cut_offs,
-                    ..
-                },
-            flat,
-            outline,
-            ..
-        } = request;
+        let RenderRequest { view, flat, outline, .. } = request;
+        let ViewSettings { camera, show_grid, grid, view_mode, passes, has_cut_offs, .. } = view;
+        let GridView { axis, cell, fades } = grid;
         // Grid lines would falsify the colors of a view mode.
         let grid = *show_grid && *view_mode == ViewMode::Shaded;
         let shown_at = Some(request.view.size_px);
@@ -400,7 +404,10 @@ impl ViewportRenderer {
             outline: outline.clone(),
             shown_at,
         };
+        // Samples follow, and have the light of every pixel.
+        let is_first_of_many = self.wanted > 1;
         let renderer = self.renderers.active();
+        renderer.set_sparse_light(is_first_of_many);
         renderer.set_traced(TracedParts { passes: *passes, has_cut_offs: *has_cut_offs });
         let mut frame = renderer.begin(slot, flat, meshes, camera, size_px, overlay)?;
         if *view_mode != ViewMode::Shaded {

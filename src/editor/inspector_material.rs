@@ -195,6 +195,7 @@ enum Section {
     First,
     Specular,
     Coat,
+    Opacity,
     Textures,
     Advanced,
     /// The material's model does not use it.
@@ -223,6 +224,7 @@ impl Section {
             path if FIRST.contains(&path) => Self::First,
             path if path.starts_with("specular_") => Self::Specular,
             path if path.starts_with("coat_") => Self::Coat,
+            "geometry_opacity" | "opacity_threshold" => Self::Opacity,
             path if path.split('.').next() == Some("textures") => Self::Textures,
             _ => Self::Advanced,
         }
@@ -253,6 +255,7 @@ fn editor(ui: &mut Ui, session: &mut EditSession, material: &Material) {
         let folded = [
             ("Specular", Section::Specular),
             ("Coat", Section::Coat),
+            ("Opacity", Section::Opacity),
             ("Textures", Section::Textures),
             ("Advanced", Section::Advanced),
         ];

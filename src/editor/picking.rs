@@ -99,7 +99,7 @@ fn surface(state: &EditorState, flat: &FlatScene, ray: &Ray, limits: RayLimits) 
     let meshes = flat.known_meshes(state.derived.library());
     let mesh = trace_meshes(flat, &meshes, ray, limits.near, limits.far).map(|(_, hit)| hit);
     let limits = RayLimits { far: mesh.as_ref().map_or(limits.far, |hit| hit.t), ..limits };
-    let mut evaluator = SceneEvaluator::new(flat).of_eye();
+    let mut evaluator = SceneEvaluator::new(flat).of_eye(ray.origin);
     let Some(hit) = evaluator.ray(ray, limits).ok().flatten() else {
         let hit = mesh?;
         let normal = if hit.normal.dot(ray.direction) > 0.0 { -hit.normal } else { hit.normal };

@@ -210,14 +210,18 @@ impl StillPainter {
             }
         };
         let (buffers, warnings) = drawn.map_err(canceled)?;
-        let base_colors = if settings.has_layers {
+        let (buffers, base_colors) = if settings.has_layers {
             let flat = flat.in_base_colors();
             let progress = &mut |share| {
                 watch.watch.progress(share_of_picture + (1.0 - share_of_picture) * share) && !task.is_canceled()
             };
-            renderer.render_base_colors(&flat, meshes, camera, settings.size, progress).map_err(canceled)?
+            let layers = renderer.render_base_colors(&flat, meshes, camera, settings.size, progress);
+            let (base_colors, first) = layers.map_err(canceled)?;
+            // Layers of numbers are those of the first surfaces, also where rays pass these.
+            let GBuffer { color, radiance, .. } = buffers;
+            (GBuffer { color, radiance, ..first }, base_colors)
         } else {
-            Vec::new()
+            (buffers, Vec::new())
         };
         Ok((Drawn { buffers, base_colors }, warnings))
     }

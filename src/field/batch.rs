@@ -25,10 +25,10 @@ const MOST_SHAPES_EACH: u32 = 4;
 /// A batch is at most this many times as large as its smallest member: its numbers are relative to its center.
 const MOST_SPREAD: f64 = 32.0;
 
-/// The components of a scene, with small neighbors of one kind joined, except those that are to stay `alone`.
+/// The components of a scene, with small neighbors of one kind joined, except those whose folds are to stay `alone`.
 pub(super) fn batched<'a>(
     components: Vec<Vec<Operand<'a>>>,
-    alone: impl Fn(&Operand<'a>) -> bool,
+    alone: impl Fn(&[Operand<'a>]) -> bool,
 ) -> Vec<Vec<Operand<'a>>> {
     let shapes = (components.len() / FEWEST_COMPONENTS).min(MOST_SHAPES);
     if shapes < 2 {
@@ -36,7 +36,7 @@ pub(super) fn batched<'a>(
     }
     let mut kinds: HashMap<Kind, Vec<Member>> = HashMap::new();
     for (at, fold) in components.iter().enumerate() {
-        if fold.first().is_some_and(&alone) {
+        if alone(fold) {
             continue;
         }
         if let (Some(kind), Some(bounds)) = (Kind::of(fold), joinable_bounds(fold)) {

@@ -24,7 +24,8 @@ pub fn coverage_layer(code: u32, vertex: u32) -> u32 {
     vertex.wrapping_add(coverage_hash(code))
 }
 
-fn coverage_hash(from: u32) -> u32 {
+/// A hash of a number.
+pub fn coverage_hash(from: u32) -> u32 {
     let state = from.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     (word >> 22) ^ word

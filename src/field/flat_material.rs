@@ -40,6 +40,14 @@ pub struct FlatMaterial {
     pub phong_specular: f32,
     /// Its exponent.
     pub phong_shininess: f32,
+    /// Share of the surface that is there.
+    pub opacity: f32,
+    /// What is less opaque than this is cut out, and the rest is opaque; 0 for blended opacity.
+    pub opacity_threshold: f32,
+    /// Padding.
+    pub padding_0: f32,
+    /// Padding.
+    pub padding_1: f32,
 }
 
 impl FlatMaterial {
@@ -67,6 +75,10 @@ impl FlatMaterial {
             phong_weight,
             phong_specular: phong_specular as f32,
             phong_shininess: phong_shininess as f32,
+            opacity: material.geometry_opacity as f32,
+            opacity_threshold: material.opacity_threshold as f32,
+            padding_0: 0.0,
+            padding_1: 0.0,
         }
     }
 }

@@ -163,12 +163,17 @@ impl FlatTexture {
     pub const LOOKS: u32 = 7;
 }
 
+/// Textures of a material.
+const TEXTURES: usize = 5;
+/// The place of the opacity among them.
+pub const OPACITY_SLOT: usize = 4;
+
 /// The textures of a material as the GPU reads them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TextureSet {
-    /// Base color, roughness, normal, height.
-    pub slots: [FlatTexture; 4],
+    /// Base color, roughness, normal, height, opacity.
+    pub slots: [FlatTexture; TEXTURES],
     /// Factor on the base color.
     pub base_weight: f32,
     /// The power of the normal that weights the projections.
@@ -268,7 +273,7 @@ impl FlatTextures {
                 ..FlatTexture::default()
             };
             let none = FlatTexture::default();
-            self.sets.push(TextureSet { slots: [looks, none, none, none], ..TextureSet::zeroed() });
+            self.sets.push(TextureSet { slots: [looks, none, none, none, none], ..TextureSet::zeroed() });
             self.set_ids.push(None);
             self.looks.push(model.clone());
             self.sets.len() - 1
@@ -312,17 +317,18 @@ impl FlatTextures {
         if let Some(known) = self.set_ids.iter().rposition(|id| *id == Some(material.id)) {
             return Some(known);
         }
-        let Textures::Triplanar { color, roughness, normal, height, sharpness, .. } = &material.textures else {
+        let Textures::Triplanar { color, roughness, normal, height, opacity, sharpness, .. } = &material.textures
+        else {
             return None;
         };
         let normal = normal.source();
         let (slope, strength) = (normal.map(|(source, _)| source), normal.map_or(1.0, |(_, strength)| strength));
-        let sources = [color.source(), roughness.source(), slope, height.source()];
+        let sources = [color.source(), roughness.source(), slope, height.source(), opacity.source()];
         if sources.iter().all(Option::is_none) {
             return None;
         }
-        let forms = [TexelForm::Color, TexelForm::Value, TexelForm::Vector, TexelForm::Value];
-        let mut slots = [FlatTexture::default(); 4];
+        let forms = [TexelForm::Color, TexelForm::Value, TexelForm::Vector, TexelForm::Value, TexelForm::Value];
+        let mut slots = [FlatTexture::default(); TEXTURES];
         for ((slot, source), form) in slots.iter_mut().zip(sources).zip(forms) {
             *slot = source.map_or_else(FlatTexture::default, |source| self.texture(source, form));
         }

@@ -7,7 +7,7 @@
 //! Hidden nodes, the empty set, groups of one operand, and groups that come first in their parent never reach the
 //! arrays. The fold of a group that comes first is the beginning of the parent's fold.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DAffine3;
 
@@ -24,7 +24,7 @@ use super::flat_texture::{TextureUse, TexturedMaterials};
 use super::lower_bound::fold_bounds;
 use super::marches::Marches;
 use super::non_field;
-use super::operand::Operand;
+use super::operand::{Operand, Value};
 use super::survey::Survey;
 use super::types::{Flattening, add_instancer};
 use super::usage::usage;
@@ -203,7 +203,8 @@ fn flatten_surveyed(
     }
     let marches = Marches::new(scene);
     flat.warnings.extend(marches.warnings());
-    let components = batched(operands, |first| !marches.of(first.outermost).is_usual());
+    let veils = scene.materials().iter().filter(|material| material.is_veiled()).map(|material| material.id).collect();
+    let components = batched(operands, |fold| stays_alone(&marches, &veils, fold));
     if let Some(first) = components.get(MAX_COMPONENTS).and_then(|beyond| beyond.first()) {
         return Err(FlattenError::new(first.outermost, APART, components.len(), MAX_COMPONENTS));
     }
@@ -234,6 +235,21 @@ fn flatten_surveyed(
     let steps = budget.steps();
     warn_of_small_images(&mut flat, scene);
     Ok(Some(Made { flat, has_cuts, steps }))
+}
+
+/// Whether a component must not be joined with others: it has settings of its own, or rays may pass it, and must not lose what
+/// is in it.
+fn stays_alone(marches: &Marches<'_>, veils: &HashSet<MaterialId>, fold: &[Operand<'_>]) -> bool {
+    let is_unusual = fold.first().is_some_and(|first| !marches.of(first.outermost).is_usual());
+    is_unusual || !veils.is_empty() && is_veiled(veils, fold)
+}
+
+fn is_veiled(veils: &HashSet<MaterialId>, fold: &[Operand<'_>]) -> bool {
+    fold.iter().any(|operand| match &operand.value {
+        Value::Leaf { material, .. } => veils.contains(material),
+        Value::Fold(inner) => is_veiled(veils, inner),
+        Value::Modified { content, .. } => is_veiled(veils, content),
+    })
 }
 
 /// Reduces the images of textures to what devices can hold, with a warning for each.
@@ -297,9 +313,15 @@ impl Materials<'_> {
 
     /// A mesh's use of a material.
     fn of_mesh(&mut self, flat: &mut FlatScene, node: &Node, id: MaterialId) -> u32 {
-        if self.textured.get(id).is_some() {
-            let reason = "has a material with textures, which meshes do not show".into();
+        let mut warn = |reason: &str| {
+            let reason = format!("has a material with {reason}, which meshes do not show");
             flat.warnings.push(Warning { node: node.id, name: node.name.clone(), reason });
+        };
+        if self.textured.get(id).is_some() {
+            warn("textures");
+        }
+        if self.scene.material(id).is_some_and(|material| material.geometry_opacity < 1.0) {
+            warn("opacity");
         }
         self.resolve(flat, MaterialUse::plain(id))
     }

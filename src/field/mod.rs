@@ -112,6 +112,7 @@ mod textures_in_view;
 mod types;
 pub mod unflattened;
 mod usage;
+pub mod veil;
 pub mod view;
 
 pub use arrays::*;

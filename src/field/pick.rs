@@ -35,7 +35,9 @@ pub fn pick_copy(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f
     let mesh = trace_meshes(flat, meshes, ray, near, far);
     let limit = mesh.map_or(far, |(_, hit)| hit.t);
     // A ray that cannot be followed to its end counts as a miss of all fields.
-    let Some(hit) = SceneEvaluator::new(flat).of_eye().ray(ray, RayLimits { near, far: limit }).ok().flatten() else {
+    let Some(hit) =
+        SceneEvaluator::new(flat).of_eye(ray.origin).ray(ray, RayLimits { near, far: limit }).ok().flatten()
+    else {
         return mesh.map(|(index, _)| Picked { node: flat.meshes[index].id, copy: None });
     };
     let component = &flat.components[hit.component as usize];

@@ -146,8 +146,8 @@ impl Last {
             if Arc::ptr_eq(old, new) {
                 continue;
             }
-            // Images, and tiles that the parameters of textures count, have their places in other arrays.
-            if old.id != new.id || old.textures != new.textures {
+            // What rays may pass is a part of its own. Images, and tiles that the parameters of textures count, have their places in other arrays.
+            if old.id != new.id || old.textures != new.textures || old.is_veiled() != new.is_veiled() {
                 return false;
             }
             let flat = Arc::make_mut(&mut self.flat);

@@ -14,6 +14,7 @@ use super::copies::world_field;
 use super::hierarchy::{Hierarchy, HierarchyNode};
 pub use super::ray_limits::RayLimits;
 use super::reference::trace::{Hit, TraceError, leaf_at, trace_component};
+use super::veil::Veils;
 use super::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
 
@@ -58,8 +59,10 @@ pub struct SceneCounts {
 pub struct SceneEvaluator<'a> {
     flat: &'a FlatScene,
     hierarchy: &'a Hierarchy,
-    /// Whether rays are those of an eye.
-    is_of_eye: bool,
+    /// What rays of an eye pass, if rays are those.
+    of_eye: Option<Veils<'a>>,
+    /// See [`FlatScene::translucency`].
+    translucency: Vec<f64>,
     /// Work since its creation.
     pub counts: SceneCounts,
 }
@@ -72,12 +75,18 @@ impl<'a> SceneEvaluator<'a> {
 
     /// Uses another hierarchy over the scene's components.
     pub fn with_hierarchy(flat: &'a FlatScene, hierarchy: &'a Hierarchy) -> Self {
-        Self { flat, hierarchy, is_of_eye: false, counts: SceneCounts::default() }
+        Self { flat, hierarchy, of_eye: None, translucency: flat.translucency(), counts: SceneCounts::default() }
     }
 
-    /// The same for rays that start at an eye: they do not meet components nearer or farther than these are drawn.
-    pub fn of_eye(self) -> Self {
-        Self { is_of_eye: true, ..self }
+    /// The same for rays that start at this eye: they do not meet components nearer or farther than these are drawn, nor
+    /// surfaces without any opacity.
+    pub fn of_eye(self, eye: DVec3) -> Self {
+        Self { of_eye: Some(Veils::new(self.flat, eye, 0.0)), ..self }
+    }
+
+    /// Share of the light that passes a component.
+    pub fn translucency(&self, component: u32) -> f64 {
+        self.translucency.get(component as usize).copied().unwrap_or(0.0)
     }
 
     /// The value of the scene at a point of the world. Any lower bound of the distance that is at least `within` may
@@ -212,14 +221,15 @@ impl<'a> SceneEvaluator<'a> {
         nearest: &mut Option<(f64, u32)>,
     ) -> Result<(), TraceError> {
         let march = &self.flat.components[index as usize].march;
-        let (near, far) = match self.is_of_eye {
+        let (near, far) = match self.of_eye.is_some() {
             true => (limits.near.max(march.near), limits.far.min(march.end())),
             false => (limits.near, limits.far),
         };
         if near > far {
             return Ok(());
         }
-        let hit = trace_component(self.flat, index, ray, [near, far], &mut self.counts.evaluations)?;
+        let hit =
+            trace_component(self.flat, index, ray, [near, far], self.of_eye.as_ref(), &mut self.counts.evaluations)?;
         if let Some(t) = hit {
             *nearest = Some((t, index));
         }

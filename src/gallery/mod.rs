@@ -35,6 +35,7 @@ mod statues;
 mod templates;
 mod textures;
 mod thumbnails;
+mod transparency;
 mod write;
 
 use isolith_scene::Scene;
@@ -87,6 +88,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("materials", materials::scene()),
         ("textures", textures::scene()),
         ("lights", lights::scene()),
+        ("transparency", transparency::scene()),
         ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("shadows", shadows::scene()),

@@ -39,6 +39,7 @@ pictures![
     "template-studio",
     "terrain",
     "textures",
+    "transparency",
 ];
 
 /// The bytes of a JPEG that shows the scene of this file name, or the template of this name in lower case behind

@@ -8,6 +8,7 @@ mod going_on;
 mod measure;
 pub(super) mod mesh_materials;
 mod pixel_counts;
+mod prewarm;
 pub(super) mod recorder;
 pub(super) mod resources;
 mod samples;
@@ -46,7 +47,7 @@ pub use error::RenderError;
 pub use frame::Frame;
 pub use measure::Counts;
 pub use pixel_counts::{Distribution, PixelCounts, TraceCounts};
-use recorder::{Recorder, meet};
+use recorder::Recorder;
 use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
 use shadows::{SeenScene, ShadowWork};
@@ -72,6 +73,10 @@ pub struct Renderer {
     timings: PassTimings,
     cancel: Cancel,
     traced: TracedParts,
+    /// See [`Renderer::set_sparse_light`].
+    sparse_light: bool,
+    /// See [`Renderer::set_late_shadows`].
+    late_shadows: bool,
 }
 
 /// The plan of a picture, before any upload.
@@ -119,6 +124,8 @@ impl Renderer {
             timings: PassTimings::default(),
             cancel: Cancel::default(),
             traced: TracedParts::default(),
+            sparse_light: false,
+            late_shadows: false,
             gpu: gpu.clone(),
         };
         gpu.check()?;
@@ -220,6 +227,8 @@ impl Renderer {
         let lights = gpu_lights(flat, &view.camera, size);
         let casters = lights.iter().filter(|light| light.cast_shadows == 1).count();
         let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
+        let shadows = shadows.map(|work| work.spaced(if self.sparse_light { 2 } else { 1 }));
+        let shadows = shadows.filter(|work| self.shadows_are_ready(flat, work));
         let tiled = bytes_of_light_tiles(lights.len(), size, limit).is_some();
         let of_shadows = shadows.map_or(0.0, |shadows| shadows.per_pixel());
         let light = PixelLight { lights: lights.len(), tiled, shadows: of_shadows };
@@ -286,9 +295,13 @@ impl Renderer {
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
         let shadowed = self.resources.shadows.used.is_on();
+        let sparse = shadowed && self.resources.shadows.used.spacing > 1;
         let tiled = self.resources.light_tiles().is_some();
-        let features = ShadeFeatures { tiled, ..ShadeFeatures::new(flat, &lights, &materials.all, shadowed) };
-        self.passes.shade.prepare(device, features)?;
+        let features = ShadeFeatures { tiled, sparse, ..ShadeFeatures::new(flat, &lights, &materials.all, shadowed) };
+        // Samples have shares for every pixel.
+        for sparse in [sparse, false].into_iter().take(1 + usize::from(sparse)) {
+            self.passes.shade.prepare(device, ShadeFeatures { sparse, ..features })?;
+        }
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }
@@ -317,6 +330,7 @@ impl Renderer {
         assert!(self.resources.counts.is_on || !view_mode.counts(), "{} needs pipelines that count", view_mode.name());
         frame.view_mode = view_mode;
         if view_mode != ViewMode::Shaded {
+            self.resources.show_first_surfaces(&self.gpu);
             let Gpu { device, queue, .. } = &self.gpu;
             self.passes.debug_view.prepare((device, queue), flat, view_mode, depth_range);
         }
@@ -424,32 +438,6 @@ impl Renderer {
             None => frame.warnings(&self.count_unfinished(frame)?),
         };
         Ok([of_rays, frame.shadow_warnings(self.resources.shadows.left_out())].concat())
-    }
-
-    /// Prewarms pipelines that have become ready, for about this time: lavapipe compiles a pipeline, or loads the
-    /// compiled code, at its first dispatch, which would delay the next picture. Returns whether there are more.
-    pub fn prewarm_pipelines(
-        &mut self,
-        flat: &FlatScene,
-        camera: &Camera,
-        time: Duration,
-    ) -> Result<bool, RenderError> {
-        if !self.gpu.is_software() {
-            return Ok(false);
-        }
-        let (start, mut has_prewarmed) = (Instant::now(), false);
-        let choices = self.choose(flat, camera)?.choices;
-        let Some(groups) = self.resources.any_groups() else { return Ok(false) };
-        for choice in choices {
-            if has_prewarmed && start.elapsed() > time {
-                return Ok(true);
-            }
-            if meet(&self.gpu, groups, &choice.pipelines) {
-                has_prewarmed = true;
-                self.gpu.wait()?;
-            }
-        }
-        Ok(false)
     }
 
     /// The picture in a slot: complete once its frame is done. [`Renderer::begin`] with another size replaces the

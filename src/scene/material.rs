@@ -65,6 +65,12 @@ param_struct! {
         emission_luminance: f64 = 0.0, LUMINANCE.labeled("Emission strength");
         /// Color of the emitted light.
         emission_color: [f64; 3] = [1.0; 3], INTENSITY.color();
+        /// Share of the surface that is there; what is behind shows through the rest.
+        #[serde(skip_serializing_if = "is_whole")]
+        geometry_opacity: f64 = 1.0, UNIT.labeled("Opacity");
+        /// Cuts out what is less opaque than this, and makes the rest opaque; 0 blends.
+        #[serde(skip_serializing_if = "is_nothing")]
+        opacity_threshold: f64 = 0.0, UNIT.labeled("Cut-out threshold");
         /// How it reflects light.
         model: ReflectionModel = ReflectionModel::OpenPbr {}, NO_LIMITS;
         /// What varies over the surface.
@@ -129,7 +135,20 @@ impl Variants for ReflectionModel {
     }
 }
 
+fn is_whole(opacity: &f64) -> bool {
+    *opacity == 1.0
+}
+
+fn is_nothing(threshold: &f64) -> bool {
+    *threshold == 0.0
+}
+
 impl Material {
+    /// Whether a ray may pass its surface somewhere.
+    pub fn is_veiled(&self) -> bool {
+        self.geometry_opacity < 1.0 || self.textures.has_opacity()
+    }
+
     /// A plastic of the given color.
     pub fn new(id: MaterialId, name: impl Into<String>, base_color: [f64; 3]) -> Self {
         Self { id, name: name.into(), base_color, ..Self::default() }

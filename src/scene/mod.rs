@@ -101,5 +101,5 @@ pub use table::Scene;
 pub use texture::{NormalTexture, TextureSpace, Textures};
 pub use texture_image::{Pyramid, TexelForm, TexelLevel, TextureImage};
 pub use texture_source::{
-    ColorSpace, ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
+    ColorSpace, ColorTexture, HeightTexture, OpacityTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
 };

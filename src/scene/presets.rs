@@ -4,11 +4,11 @@
 //! Real-Time Rendering, fourth edition (2018); indices of refraction are those that handbooks give for the sodium line.
 //! The rest is chosen by eye. Colors are linear Rec. 709.
 
-use crate::{Material, MaterialId};
+use crate::{Material, MaterialId, OpacityTexture, Textures};
 
 /// The ready-made materials, each under its name. Their ids are the same, so a scene gives each a new one.
 pub fn material_presets() -> impl Iterator<Item = Material> {
-    let all = dielectrics().into_iter().chain(coated()).chain(metals()).chain(emitting());
+    let all = dielectrics().into_iter().chain(coated()).chain(metals()).chain(emitting()).chain(clear());
     all.map(|(name, material)| Material { name: name.into(), id: MaterialId(1), ..material })
 }
 
@@ -90,6 +90,31 @@ fn metals() -> Vec<Preset> {
         ("Chrome", metal([0.549, 0.556, 0.554], 0.03)),
         ("Nickel", metal([0.660, 0.609, 0.526], 0.26)),
         ("Titanium", metal([0.542, 0.497, 0.449], 0.38)),
+    ]
+}
+
+/// What lets light through.
+fn clear() -> Vec<Preset> {
+    let glass = |base_color, roughness, geometry_opacity| Material {
+        geometry_opacity,
+        ..dielectric(base_color, roughness, 1.5)
+    };
+    let cut = |material: Material, opacity, tile| {
+        let mut textures = Textures::triplanar();
+        if let Textures::Triplanar { opacity: own, size, sharpness, .. } = &mut textures {
+            (*own, *size, *sharpness) = (opacity, tile, 32.0);
+        }
+        Material { textures, opacity_threshold: 0.5, ..material }
+    };
+    let bars = OpacityTexture::Bricks { first: 0.0, second: 1.0, scale: 4.0, row: 1.0, joint: 0.3 };
+    let moth_eaten = OpacityTexture::Noise { first: 1.0, second: 0.0, scale: 6.0, layers: 4, seed: 2 };
+    vec![
+        ("Window glass", glass([0.62, 0.74, 0.72], 0.02, 0.12)),
+        ("Bottle glass", glass([0.03, 0.22, 0.09], 0.04, 0.45)),
+        ("Smoked glass", glass([0.05, 0.045, 0.04], 0.05, 0.6)),
+        ("Frosted film", glass([0.80, 0.82, 0.84], 0.6, 0.55)),
+        ("Wire mesh", cut(metal([0.562, 0.565, 0.578], 0.35), bars, 0.4)),
+        ("Worn cloth", cut(dry([0.32, 0.20, 0.12], 0.9, 0.1), moth_eaten, 1.0)),
     ]
 }
 

@@ -10,7 +10,9 @@ use super::attachment::Attachment;
 use super::limits::{BUMP, NO_LIMITS, POSITION, SHARPNESS, STRETCH, TEXTURE_SCALE, TILE, TURBULENCE, TURN};
 use super::params::{Variants, choices, nested_variants, param_rows, param_variants};
 use super::texture_image::TextureImage;
-use super::texture_source::{ColorSpace, ColorTexture, HeightTexture, RoughnessTexture, TextureSource, TextureWrap};
+use super::texture_source::{
+    ColorSpace, ColorTexture, HeightTexture, OpacityTexture, RoughnessTexture, TextureSource, TextureWrap,
+};
 
 /// The space that textures live in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -144,6 +146,9 @@ pub enum Textures {
         /// The height.
         #[serde(default, skip_serializing_if = "HeightTexture::is_none")]
         height: HeightTexture,
+        /// The opacity.
+        #[serde(default, skip_serializing_if = "OpacityTexture::is_none")]
+        opacity: OpacityTexture,
         /// Height of the embossing, in meters.
         bump: f64,
         /// The space that they live in.
@@ -164,7 +169,7 @@ pub enum Textures {
 param_variants! { Textures by |textures| textures.table(); {
     Textures::None {}
     Textures::Triplanar {
-        color, roughness, normal, height, bump, space, size, stretch, offset, rotation, sharpness,
+        color, roughness, normal, height, opacity, bump, space, size, stretch, offset, rotation, sharpness,
     }
 } }
 nested_variants!(Textures, "Textures", "Colors and values that vary over the surface.");
@@ -181,6 +186,11 @@ impl Textures {
         matches!(self, Self::None {})
     }
 
+    /// Whether one of them gives the opacity.
+    pub fn has_opacity(&self) -> bool {
+        matches!(self, Self::Triplanar { opacity, .. } if opacity.source().is_some())
+    }
+
     /// A mapping by default, still without textures.
     pub fn triplanar() -> Self {
         Self::Triplanar {
@@ -188,6 +198,7 @@ impl Textures {
             roughness: RoughnessTexture::default(),
             normal: NormalTexture::default(),
             height: HeightTexture::default(),
+            opacity: OpacityTexture::default(),
             bump: 0.02,
             space: TextureSpace::Object,
             size: 1.0,

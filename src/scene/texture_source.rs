@@ -374,6 +374,11 @@ texture! {
     f64, UNIT, Linear, 0.2, 0.7
 }
 texture! {
+    /// The texture of the opacity.
+    OpacityTexture, "Opacity", "What gives the opacity: 1 is there, 0 is a hole.";
+    f64, UNIT, Linear, 1.0, 0.0
+}
+texture! {
     /// The texture of the height, which bends the light as if the surface were embossed.
     HeightTexture, "Height", "What embosses the surface: 1 is high, 0 is low.";
     f64, UNIT, Linear, 1.0, 0.0

@@ -10,7 +10,7 @@ use super::gradients::gradient_wgsl;
 use super::lookahead;
 use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
 use super::op_set::OpSet;
-use super::options::{Options, SkipMode};
+use super::options::{Options, SkipMode, Veil};
 use super::specialize::{Fold, specialize};
 
 /// The whole source of the shader `entry`. It contains each file once, before its first user.
@@ -48,7 +48,13 @@ pub fn assemble_with(
     .expect("strings take all");
     out += &lookahead::constants(evaluator, options);
     let modifiers = (!ops.modifiers.is_empty()).then_some("MODIFIERS");
-    let features: Vec<&str> = features.iter().copied().chain(modifiers).collect();
+    let veils = match options.veil {
+        _ if entry != "trace.wgsl" => &[],
+        Veil::None => &[][..],
+        Veil::Plain => &["VEILED"],
+        Veil::Textured => &["VEILED", "TEXTURES"],
+    };
+    let features: Vec<&str> = features.iter().chain(veils).copied().chain(modifiers).collect();
     out += &resolve(entry, &features, &|name| match name {
         "generated/instancer.wgsl" => Some(instancer(&features)),
         _ => generated(name, evaluator, options),
@@ -96,6 +102,9 @@ fn generated(name: &str, evaluator: &Evaluator, options: Options) -> Option<Stri
         ("generated/surface.wgsl", Baked(structure, rows)) => special(structure, Some(rows), Fold::Surface),
         ("generated/slack.wgsl", Tape(f)) if f.modifiers.is_empty() => include("tape_slack"),
         ("generated/slack.wgsl", _) => include("no_slack"),
+        ("generated/trace_march.wgsl", _) if options.veil != Veil::None => {
+            Some(format!("#include \"{}/trace_veiled.wgsl\"", if options.copies { "copy" } else { "common" }))
+        }
         ("generated/trace_march.wgsl", _) if options.copies => Some("#include \"copy/trace.wgsl\"".into()),
         ("generated/trace_march.wgsl", _) => Some("#include \"common/trace_march.wgsl\"".into()),
         ("generated/surface_seen.wgsl", _) if options.copies => Some("#include \"copy/surface.wgsl\"".into()),

@@ -37,5 +37,5 @@ pub use evaluator::Evaluator;
 pub use files::{FILES, ShaderError};
 pub use leaf_cost::tapes_are_cheaper;
 pub use op_set::{Extended, OpSet, fits_templates, shape_loops};
-pub use options::{Options, Quality, SkipMode};
+pub use options::{Options, Quality, SkipMode, Veil};
 pub use structure::{MAX_PIPELINE_ROWS, ShapeSet, Structure, template_rows};

@@ -13,6 +13,18 @@ pub enum SkipMode {
     Never,
 }
 
+/// What rays may pass of a component.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Veil {
+    /// Nothing.
+    #[default]
+    None,
+    /// Surfaces whose materials say so.
+    Plain,
+    /// The same, and textures may say so.
+    Textured,
+}
+
 /// Tolerance of the march at the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
@@ -71,6 +83,8 @@ pub struct Options {
     pub shadowed: bool,
     /// Whether the components are types of instancers.
     pub copies: bool,
+    /// What rays may pass of the components.
+    pub veil: Veil,
 }
 
 impl Default for Options {
@@ -86,6 +100,7 @@ impl Default for Options {
             image_lit: false,
             shadowed: false,
             copies: false,
+            veil: Veil::None,
         }
     }
 }

@@ -4,7 +4,7 @@ use isolith::scene::{Material, Param, ParamValue, Params as _};
 use openpbr::{Bound, Kind, ParamDefault, ParamInfo, Range};
 
 /// Parts of a material that are not OpenPBR's.
-const OWN: &[&str] = &["model.", "textures."];
+const OWN: &[&str] = &["model.", "textures.", "opacity_threshold"];
 
 /// Where a range differs, and why.
 const DEVIATIONS: &[(&str, &str)] = &[

@@ -30,10 +30,14 @@ impl ShadingPoint {
 pub struct EnvironmentShares {
     /// On the light that arrives from all around.
     pub diffuse: DVec3,
-    /// On the light from about `direction`, blurred by `roughness`.
+    /// How much more of it comes from the side of the eye: added to the mean direction.
+    pub lean: DVec3,
+    /// On the light from about `dominant`, blurred by `roughness`.
     pub specular: DVec3,
     /// Roughness of the specular reflection.
     pub roughness: f64,
+    /// Between the mirrored ray and the normal: most of what a rough surface reflects comes from there.
+    pub dominant: DVec3,
     /// Direction of the mirrored ray.
     pub direction: DVec3,
     /// On the light from about `direction`, blurred by `coat_roughness`.
@@ -72,15 +76,26 @@ pub fn brdf_ambient(point: &ShadingPoint) -> DVec3 {
     shares.diffuse + shares.specular + shares.coat
 }
 
-/// The shares of the light of the environment: a split sum.
+/// How far the mean direction of the light that a rough diffuse surface reflects leans toward the eye: a fit to integrals
+/// over a studio.
+const LEAN: f64 = 0.5;
+
+/// The shares of the light of the environment: a split sum. The dominant direction is that of Lagarde and de Rousiers,
+/// "Moving Frostbite to Physically Based Rendering" (2014).
 pub fn brdf_environment(point: &ShadingPoint) -> EnvironmentShares {
     let (layers, weight) = (point.layers(), 1.0 - point.material.phong_weight);
     let diffuse = point.material.base_color * point.material.phong_weight;
+    let ShadingPoint { normal, to_eye, .. } = *point;
+    let direction = 2.0 * normal.dot(to_eye) * normal - to_eye;
+    let smooth = 1.0 - layers.alpha;
+    let leaning = LEAN * weight * layers.diffuse_roughness;
     EnvironmentShares {
+        lean: (to_eye - normal * normal.dot(to_eye)) * leaning,
+        dominant: normal.lerp(direction, smooth * (smooth.sqrt() + layers.alpha)).normalize(),
         diffuse: diffuse + weight * layers.diffuse_albedo,
         specular: weight * layers.specular_albedo,
         roughness: layers.alpha.sqrt(),
-        direction: 2.0 * point.normal.dot(point.to_eye) * point.normal - point.to_eye,
+        direction,
         coat: weight * layers.coat_albedo,
         coat_roughness: layers.coat_alpha.sqrt(),
     }

@@ -45,8 +45,9 @@ pub fn environment_on(point: &ShadingPoint, environment: &EnvironmentLight<'_>, 
     };
     let shares = brdf_environment(point);
     let mirrored = placed.map_from_world(shares.direction);
-    let diffuse = shares.diffuse * placed.map.irradiance(placed.map_from_world(free));
-    let specular = shares.specular * placed.map.reflected(mirrored, shares.roughness);
+    let around = (free + shares.lean).normalize();
+    let diffuse = shares.diffuse * placed.map.irradiance(placed.map_from_world(around));
+    let specular = shares.specular * placed.map.reflected(placed.map_from_world(shares.dominant), shares.roughness);
     let coat = placed.map.reflected(mirrored, shares.coat_roughness) * shares.coat;
     (diffuse + specular + coat) * placed.strength
 }

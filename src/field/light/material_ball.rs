@@ -39,6 +39,8 @@ struct Lamp {
 /// The studio: three lamps above a floor.
 struct Studio {
     lamps: [Lamp; 3],
+    /// Of the ball.
+    opacity: f64,
 }
 
 /// A lobe of a material: where its samples go.
@@ -51,11 +53,12 @@ enum Lobe {
 }
 
 /// The picture of a material: `side` rows of as many pixels from the top, red, green, blue and 255.
-pub fn material_ball(material: &FlatMaterial, side: usize) -> Vec<[u8; 4]> {
-    let mut material = SurfaceMaterial::from(material);
+pub fn material_ball(of: &FlatMaterial, side: usize) -> Vec<[u8; 4]> {
+    let mut material = SurfaceMaterial::from(of);
     material.roughness = material.roughness.max(LEAST_ROUGHNESS);
     material.coat_roughness = material.coat_roughness.max(LEAST_ROUGHNESS);
-    let studio = Studio::new();
+    let is_cut = of.opacity_threshold > 0.0;
+    let studio = Studio { opacity: if is_cut { 1.0 } else { f64::from(of.opacity) }, ..Studio::new() };
     let back = (EYE - TARGET).normalize();
     let right = DVec3::Y.cross(back).normalize();
     let world_from_view = DMat3::from_cols(right, back.cross(right), back);
@@ -85,6 +88,7 @@ impl Studio {
             radiance: radiance.into(),
         };
         Self {
+            opacity: 1.0,
             lamps: [
                 // The key over the left shoulder, a weak fill from the right, a rim from behind.
                 lamp([-0.62, 0.80, 0.72], [0.42, 0.36], [4.6, 4.45, 4.2]),
@@ -107,7 +111,7 @@ impl Studio {
         let into = (1.0 - nearest.length_squared()).max(0.0).sqrt();
         let normal = (nearest - direction * into).normalize();
         let point = ShadingPoint { material: *material, position: normal - EYE, normal, to_eye: -direction };
-        behind.lerp(self.reflected(&point, world_from_view) + material.emission, coverage)
+        behind.lerp(self.reflected(&point, world_from_view) + material.emission, coverage * self.opacity)
     }
 
     /// The light of the studio that a point of the ball reflects to the eye.

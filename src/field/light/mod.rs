@@ -25,6 +25,8 @@ pub mod display;
 mod energy;
 pub mod environment;
 pub mod environment_map;
+#[cfg(test)]
+mod flip;
 pub mod layers;
 pub mod lighting;
 #[cfg(test)]
@@ -33,6 +35,8 @@ pub mod material_ball;
 pub mod model_look;
 pub mod occlusion;
 pub mod shadow;
+#[cfg(test)]
+mod sphere;
 pub mod texture;
 #[cfg(test)]
 mod walk;

@@ -180,6 +180,7 @@ fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits
     let mut ratio = 1.0_f64;
     for visit in evaluator.visits(axis, limits, OCCLUSION_TANGENT) {
         let component = &flat.components[visit.component as usize];
+        let translucency = evaluator.translucency(visit.component);
         if component.instanced.is_some() {
             let counts = &mut evaluator.counts;
             visit_copies(flat, component, axis, limits, OCCLUSION_TANGENT, &mut |copy, _| {
@@ -188,12 +189,14 @@ fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits
                 let range = RayLimits { near: limits.near * stretch, far: limits.far * stretch };
                 // What is parallel to the receiver, as the receiver itself, is as far away as elsewhere.
                 let sine = OCCLUSION_SINE * inner.across(normal) / stretch;
-                ratio = ratio.min(ratio_of(flat, component, &inner.ray, range, sine, counts));
+                let one = ratio_of(flat, component, &inner.ray, range, sine, counts);
+                ratio = ratio.min(one.max(-1.0) + (1.0 - one.max(-1.0)) * translucency);
                 ControlFlow::Continue(limits.far)
             });
             continue;
         }
-        ratio = ratio.min(ratio_of(flat, component, axis, limits, OCCLUSION_SINE, &mut evaluator.counts));
+        let one = ratio_of(flat, component, axis, limits, OCCLUSION_SINE, &mut evaluator.counts);
+        ratio = ratio.min(one.max(-1.0) + (1.0 - one.max(-1.0)) * translucency);
     }
     ratio
 }

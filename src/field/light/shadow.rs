@@ -82,6 +82,13 @@ pub struct ShadowShare {
 }
 
 impl ShadowShare {
+    /// The same if this share of the light passes what is in the way.
+    fn through(self, translucency: f64) -> Self {
+        let is_dark = self.proof == ShadowProof::Dark && translucency > 0.0;
+        let proof = if is_dark { ShadowProof::None } else { self.proof };
+        Self { share: self.share + (1.0 - self.share) * translucency, proof }
+    }
+
     /// What both leave: see [`WIDE_SPREAD`].
     fn and(self, other: Self, spread: f64) -> Self {
         let share = if spread < WIDE_SPREAD { self.share * other.share } else { self.share.min(other.share) };
@@ -144,7 +151,7 @@ pub fn shadow_share(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone) -> Sh
     let mut all = ShadowShare { share: 1.0, proof: ShadowProof::Lit };
     let limits = RayLimits { near: cone.near, far: cone.far };
     for visit in evaluator.visits(&cone.axis, limits, cone.spread) {
-        let one = shadow_of(evaluator, cone, &visit);
+        let one = shadow_of(evaluator, cone, &visit).through(evaluator.translucency(visit.component));
         if one.proof == ShadowProof::Dark {
             return one;
         }

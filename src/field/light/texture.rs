@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 use super::model_look::model_look;
 use crate::FlatScene;
 use crate::eval::noise_value;
-use crate::flat_texture::{FlatImage, FlatTexture, FlatTextures, GpuPlacedTextures, TILES};
+use crate::flat_texture::{FlatImage, FlatTexture, FlatTextures, GpuPlacedTextures, OPACITY_SLOT, TILES, TextureSet};
 use crate::mixture::{Mixture, SurfaceMaterial};
 use isolith_scene::{TexelForm, TexelLevel};
 
@@ -241,15 +241,8 @@ fn texture_repeated(placed: &GpuPlacedTextures, position: DVec3) -> DVec3 {
     x * cell.x + y * cell.y + z * cell.z
 }
 
-/// A material with its textures, and by how much they bend the normal.
-fn textured_material(
-    material: SurfaceMaterial,
-    textures: &FlatTextures,
-    placed: &GpuPlacedTextures,
-    point: &TexturedPoint,
-) -> (SurfaceMaterial, DVec3) {
-    let (mut material, mut bend) = (material, DVec3::ZERO);
-    let set = &textures.sets[placed.textures as usize];
+/// A point in the space of the textures of a set, and the axes of that space.
+fn textured_sample(set: &TextureSet, placed: &GpuPlacedTextures, point: &TexturedPoint) -> (Sample, [DVec3; 3]) {
     let wide = placed.rows.map(|row| row.map(f64::from));
     let rows = DMat3::from_cols_array_2d(&wide.map(|[x, y, z, _]| [x, y, z])).transpose();
     let axes = [0, 1, 2].map(|i| rows.row(i).normalize());
@@ -262,6 +255,58 @@ fn textured_material(
         normal,
         weights: texture_weights(normal, set.sharpness.into()),
     };
+    (sample, axes)
+}
+
+/// The opacity that a texture gives at a point, read by `detail` footprints; `None` if none does. `copy_from_eye` leads to
+/// the space of the copy that shows it.
+pub fn textured_opacity(
+    textures: &FlatTextures,
+    placed: &GpuPlacedTextures,
+    point: &TexturedPoint,
+    copy_from_eye: Option<DAffine3>,
+    detail: f64,
+) -> Option<f64> {
+    let set = textures.sets.get(placed.textures as usize)?;
+    let texture = &set.slots[OPACITY_SLOT];
+    if texture.kind == 0 {
+        return None;
+    }
+    let there = copy_from_eye.filter(|_| placed.copied_by > 0).map(|space| textured_copied(point, &space));
+    let (sample, _) = textured_sample(set, placed, there.as_ref().unwrap_or(point));
+    let at = texture_wrapped(sample.at);
+    let sample = Sample { at, across: sample.across * detail, along: sample.along * detail, ..sample };
+    Some(textured_value(&textures.images, texture, &sample, false).x.clamp(0.0, 1.0))
+}
+
+/// Places along a side of a tile where the mean of an opacity is taken.
+const MEAN_PLACES: u32 = 16;
+
+/// The mean over a tile of what `shown` makes of the opacity of a set.
+pub fn mean_texture_opacity(textures: &FlatTextures, set: usize, shown: impl Fn(f64) -> f64) -> f64 {
+    let texture = &textures.sets[set].slots[OPACITY_SLOT];
+    let places = (0..MEAN_PLACES * MEAN_PLACES).map(|i| {
+        let place = DVec3::new((i % MEAN_PLACES).into(), (i / MEAN_PLACES).into(), 0.0);
+        (place + DVec3::new(0.5, 0.5, 0.0)) / f64::from(MEAN_PLACES)
+    });
+    let value = |at: DVec3| {
+        let (across, along) = (DVec3::ZERO, DVec3::ZERO);
+        let sample = Sample { at, across, along, normal: DVec3::Z, weights: DVec3::Z };
+        shown(textured_value(&textures.images, texture, &sample, false).x.clamp(0.0, 1.0))
+    };
+    places.map(value).sum::<f64>() / f64::from(MEAN_PLACES * MEAN_PLACES)
+}
+
+/// A material with its textures, and by how much they bend the normal.
+fn textured_material(
+    material: SurfaceMaterial,
+    textures: &FlatTextures,
+    placed: &GpuPlacedTextures,
+    point: &TexturedPoint,
+) -> (SurfaceMaterial, DVec3) {
+    let (mut material, mut bend) = (material, DVec3::ZERO);
+    let set = &textures.sets[placed.textures as usize];
+    let (sample, axes) = textured_sample(set, placed, point);
     if set.slots[0].kind == FlatTexture::LOOKS {
         let width = (sample.across.length() * sample.along.length()).sqrt();
         let looks = model_look(&textures.looks[set.slots[0].a as usize], texture_wrapped(sample.at), width);

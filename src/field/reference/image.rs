@@ -23,6 +23,7 @@ use crate::mesh_material::mesh_material;
 use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
 use crate::mixture::mixture_material;
 use crate::scene_eval::SceneEvaluator;
+use crate::veil::Veils;
 use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, GpuPlacedTextures, HitTarget, MESH_BIT, NO_LEAF, gpu_textures};
 use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, MeshLook, TriangleMesh};
@@ -122,7 +123,8 @@ pub fn render_reference_at(
     let center = jitter + 0.5;
     let (lights, textures) = (gpu_lights(flat, camera, [width, height]), gpu_textures(flat, camera));
     let view = View { flat, meshes, camera, lights, textures, size: [width, height], center };
-    let tracer = Tracer::new(flat);
+    let footprint = camera.footprint(f64::from(height));
+    let tracer = Tracer::new(flat).through(Veils::new(flat, camera.position, footprint));
     let done = AtomicU32::new(0);
     let rows: Vec<Vec<Pixel>> = (0..height)
         .into_par_iter()
@@ -150,7 +152,7 @@ pub fn render_reference_at(
         }
     }
     let nodes = buffers.leaf.iter().map(|code| node_of(flat, *code)).collect();
-    Ok(ReferenceImage { buffers, margin, footprint: camera.footprint(f64::from(height)), nodes, tied, turned })
+    Ok(ReferenceImage { buffers, margin, footprint, nodes, tied, turned })
 }
 
 struct View<'a> {
@@ -187,12 +189,16 @@ impl View<'_> {
         let margin = (march.margin / footprint) as f32;
         let mut is_close = march.margin <= NEAR_AN_EDGE * GRAZING_ANGLE;
         let mut tied = false;
-        let mut shading_normal = None;
+        let (mut shading_normal, mut to_eye) = (None, -ray.direction);
         let (t, leaf, normal, material, occlusion) = if let Some(hit) = march.hit {
             let component = &self.flat.components[hit.component as usize];
             let point = world_surface(self.flat, component, ray.at(hit.t));
             tied = point.tied;
             let normal = point.gradient.try_normalize().unwrap_or(-ray.direction);
+            // Rays that pass surfaces meet others from within, and see the light of the side without.
+            if tracer.passes_surfaces() && normal.dot(ray.direction) > 0.0 {
+                to_eye -= normal * (2.0 * to_eye.dot(normal));
+            }
             let look = look_at(self.flat, component, ray.at(hit.t));
             let mixture = look.map_or(point.materials, |look| look_mixture(&look, point.materials));
             let mut material = point.material;
@@ -220,12 +226,8 @@ impl View<'_> {
         // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
         let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
-        let point = ShadingPoint {
-            material,
-            position: ray.direction * t,
-            normal: shading_normal.unwrap_or(normal),
-            to_eye: -ray.direction,
-        };
+        let point =
+            ShadingPoint { material, position: ray.direction * t, normal: shading_normal.unwrap_or(normal), to_eye };
         let color = self.shade(&point, occlusion, normal, [x, y])?;
         Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
     }
@@ -234,6 +236,7 @@ impl View<'_> {
         let range = [self.camera.near, self.camera.far];
         let mesh = trace_meshes_of_pixel(self.flat, self.meshes, ray, range, at);
         let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
+        tracer.set_sample(at);
         Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
     }
 

@@ -5,6 +5,9 @@
 //! predicts, plus the rounding: so it enters a sheet however thin, and a ray that only comes near continues and never
 //! counts as a hit.
 //!
+//! Surfaces that do not cover what the ray is for, see [`Veils`], are passed: within the solid the ray follows the field with
+//! its sign turned, until it leaves the solid.
+//!
 //! Conventions shared with the renderer: a hit is the first point where the field is negative, so a shape without
 //! volume is invisible; a ray that starts inside a solid hits at `near`. The arrays are rounded to f32. Where a cut
 //! ends flush with a face, or two faces coincide, that rounding may leave a skin: between parallel faces of two
@@ -16,9 +19,11 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::copies::{CopyRay, copy_ray, nearest_copy, visit_copies};
-use crate::eval::{field, gradient, surface};
+use crate::copies::{CopyRay, copy_ray, nearest_copy, visit_copies, world_gradient};
+use crate::coverage::PixelSample;
+use crate::eval::{SurfacePoint, field, gradient, surface};
 use crate::ray_limits::RayLimits;
+use crate::veil::{VeilPoint, Veils};
 use crate::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
 use isolith_scene::NodeId;
@@ -79,16 +84,17 @@ pub fn trace(flat: &FlatScene, ray: &Ray, near: f64, far: f64) -> Result<Option<
     Tracer::new(flat).march(ray, near, far).map(|march| march.hit)
 }
 
-/// The first surface of one component on the ray between `near` and `far`. Adds the number of evaluations to
+/// The first surface of one component on the ray between `near` and `far`; with `veils` the first that covers. Adds the number of evaluations to
 /// `evaluations`.
 pub fn trace_component(
     flat: &FlatScene,
     index: u32,
     ray: &Ray,
     [near, far]: [f64; 2],
+    veils: Option<&Veils<'_>>,
     evaluations: &mut u64,
 ) -> Result<Option<f64>, TraceError> {
-    let found = follow(flat, index, ray, [near, far]);
+    let found = follow(flat, index, ray, [near, far], veils);
     *evaluations += found.evaluations;
     found.hit
 }
@@ -98,21 +104,36 @@ struct Followed {
     hit: Result<Option<f64>, TraceError>,
     evaluations: u64,
     margin: f64,
+    /// See [`Line::side`], at the hit.
+    side: f64,
 }
 
 /// Follows the ray through a component, or through each copy that it may meet.
-fn follow(flat: &FlatScene, index: u32, ray: &Ray, [near, far]: [f64; 2]) -> Followed {
+fn follow(flat: &FlatScene, index: u32, ray: &Ray, [near, far]: [f64; 2], veils: Option<&Veils<'_>>) -> Followed {
     let component = &flat.components[index as usize];
+    let veils = veils.filter(|veils| veils.may_pass(index));
     if component.instanced.is_none() {
         let mut line = Line::new(flat, index, ray);
-        let hit = line.first_hit(near, far);
-        return Followed { hit, evaluations: line.fields.get(), margin: line.margin };
+        let passes = |t: f64, surface: &SurfacePoint, passed: u32| {
+            let (materials, gradient) = (surface.materials, surface.gradient);
+            let point = VeilPoint { component: index, copy: None, t, materials, gradient, passed };
+            veils.is_some_and(|veils| !veils.covers(ray, &point))
+        };
+        let hit = line.covering_hit([near, far], veils.is_some().then_some(&passes));
+        return Followed { hit, evaluations: line.fields.get(), margin: line.margin, side: line.side };
     }
-    let mut found = Followed { hit: Ok(None), evaluations: 0, margin: f64::INFINITY };
+    let mut found = Followed { hit: Ok(None), evaluations: 0, margin: f64::INFINITY, side: 1.0 };
     visit_copies(flat, component, ray, RayLimits { near, far }, CLEAR, &mut |copy, limits| {
-        let CopyRay { ray, stretch, .. } = copy_ray(flat, component, copy, ray);
-        let mut line = Line::new(flat, index, &ray);
-        let hit = line.first_hit(limits.near * stretch, limits.far * stretch);
+        let CopyRay { ray: inner, stretch, .. } = copy_ray(flat, component, copy, ray);
+        let mut line = Line::new(flat, index, &inner);
+        let passes = |t: f64, surface: &SurfacePoint, passed: u32| {
+            let gradient = world_gradient(flat, component, ray.at(t / stretch)).1;
+            let (copy, materials) = (Some(copy), surface.materials);
+            let point = VeilPoint { component: index, copy, t: t / stretch, materials, gradient, passed };
+            veils.is_some_and(|veils| !veils.covers(ray, &point))
+        };
+        let range = [limits.near * stretch, limits.far * stretch];
+        let hit = line.covering_hit(range, veils.is_some().then_some(&passes));
         found.evaluations += line.fields.get();
         found.margin = found.margin.min(line.margin);
         match hit {
@@ -120,7 +141,7 @@ fn follow(flat: &FlatScene, index: u32, ray: &Ray, [near, far]: [f64; 2]) -> Fol
                 found.hit = Err(error);
                 return ControlFlow::Break(());
             }
-            Ok(Some(t)) => found.hit = Ok(Some(t / stretch)),
+            Ok(Some(t)) => (found.hit, found.side) = (Ok(Some(t / stretch)), line.side),
             Ok(None) => {}
         }
         ControlFlow::Continue(found.hit.ok().flatten().unwrap_or(far))
@@ -150,6 +171,8 @@ pub fn leaf_at(flat: &FlatScene, component: u32, ray: &Ray, t: f64) -> u32 {
 #[derive(Clone)]
 pub struct Tracer<'a> {
     flat: &'a FlatScene,
+    /// What rays pass.
+    veils: Option<Veils<'a>>,
     /// Bounds of the components, slightly expanded: the arrays are rounded to f32, the bounds are not.
     bounds: Vec<Aabb>,
     /// Entry, exit and index of the components on the current ray.
@@ -163,9 +186,27 @@ impl<'a> Tracer<'a> {
     pub fn new(flat: &'a FlatScene) -> Self {
         Self {
             flat,
+            veils: None,
             bounds: flat.components.iter().map(|c| c.world_bounds().translated(-c.origin)).collect(),
             order: Vec::new(),
             evaluations: 0,
+        }
+    }
+
+    /// Makes rays pass surfaces. All of them have to begin at the eye of `veils`.
+    pub fn through(self, veils: Veils<'a>) -> Self {
+        Self { veils: Some(veils), ..self }
+    }
+
+    /// Whether rays pass surfaces of the scene.
+    pub fn passes_surfaces(&self) -> bool {
+        self.veils.as_ref().is_some_and(Veils::is_on)
+    }
+
+    /// Sets the sample of the pixel that rays are for from now on.
+    pub fn set_sample(&mut self, at: PixelSample) {
+        if let Some(veils) = &mut self.veils {
+            veils.at = Some(at);
         }
     }
 
@@ -184,22 +225,23 @@ impl<'a> Tracer<'a> {
             }
         }
         self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let mut nearest: Option<(f64, u32)> = None;
+        let mut nearest: Option<(f64, u32, f64)> = None;
         let mut margin = f64::INFINITY;
         for &(entry, exit, index) in &self.order {
-            let limit = nearest.map_or(exit, |(t, _)| exit.min(t));
+            let limit = nearest.map_or(exit, |(t, ..)| exit.min(t));
             if entry > limit {
                 break;
             }
-            let found = follow(self.flat, index, ray, [entry, limit]);
+            let found = follow(self.flat, index, ray, [entry, limit], self.veils.as_ref());
             self.evaluations += found.evaluations;
             if let Some(t) = found.hit? {
-                nearest = Some((t, index));
+                nearest = Some((t, index, found.side));
             }
             margin = margin.min(found.margin);
         }
-        let Some((t, component)) = nearest else { return Ok(March { hit: None, margin }) };
-        let (line, along) = line_at(self.flat, component, ray, t);
+        let Some((t, component, side)) = nearest else { return Ok(March { hit: None, margin }) };
+        let (mut line, along) = line_at(self.flat, component, ray, t);
+        line.side = side;
         let leaf = surface(self.flat, line.component, line.at(along)).leaf;
         let margin = margin.min(line.depth(along));
         self.evaluations += line.fields.get();
@@ -207,12 +249,17 @@ impl<'a> Tracer<'a> {
     }
 }
 
+/// See [`Line::covering_hit`].
+type Passes<'a> = dyn Fn(f64, &SurfacePoint, u32) -> bool + 'a;
+
 /// A ray through one component.
 struct Line<'a> {
     flat: &'a FlatScene,
     component: &'a Component,
     origin: DVec3,
     direction: DVec3,
+    /// −1 within a solid that the ray may leave: its field counts as that of the space around.
+    side: f64,
     evaluations: u32,
     /// The number of evaluations by `field` and `slope`.
     fields: Cell<u64>,
@@ -228,6 +275,7 @@ impl<'a> Line<'a> {
             component,
             origin,
             direction: ray.direction,
+            side: 1.0,
             evaluations: 0,
             fields: Cell::new(0),
             margin: f64::INFINITY,
@@ -240,18 +288,36 @@ impl<'a> Line<'a> {
 
     fn field(&self, t: f64) -> f64 {
         self.fields.set(self.fields.get() + 1);
-        field(self.flat, self.component, self.at(t))
+        self.side * field(self.flat, self.component, self.at(t))
     }
 
     /// The field's slope along the ray.
     fn slope(&self, t: f64) -> f64 {
         self.fields.set(self.fields.get() + 1);
-        gradient(self.flat, self.component, self.at(t)).1.dot(self.direction)
+        self.side * gradient(self.flat, self.component, self.at(t)).1.dot(self.direction)
     }
 
     /// The rounding of the field's value at `t`.
     fn rounding(&self, t: f64) -> f64 {
         ROUNDING * (self.origin.length() + t)
+    }
+
+    /// The first hit that is not passed; `passes` gets its place, its surface, and how many have been passed before.
+    fn covering_hit(
+        &mut self,
+        [entry, exit]: [f64; 2],
+        passes: Option<&Passes<'_>>,
+    ) -> Result<Option<f64>, TraceError> {
+        let (mut from, mut passed) = (entry, 0);
+        loop {
+            let Some(hit) = self.first_hit(from, exit)? else { return Ok(None) };
+            let Some(passes) = passes else { return Ok(Some(hit)) };
+            if !passes(hit, &surface(self.flat, self.component, self.at(hit)), passed) {
+                return Ok(Some(hit));
+            }
+            // At the hit, the sign has just changed.
+            (from, passed, self.side) = (hit, passed + 1, -self.side);
+        }
     }
 
     fn first_hit(&mut self, entry: f64, exit: f64) -> Result<Option<f64>, TraceError> {

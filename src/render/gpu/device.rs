@@ -116,11 +116,11 @@ fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Storage textures of a pass: up to four targets, rows, tapes and bricks. WebGPU's default limit is four.
-const STORAGE_TEXTURES: u32 = 7;
+/// Storage textures of a pass: up to four targets, rows, tapes, bricks and images. WebGPU's default limit is four.
+const STORAGE_TEXTURES: u32 = 8;
 
-/// Storage buffers of a pass: shadows in a scene with meshes and copies. WebGPU's default limit is eight.
-const STORAGE_BUFFERS: u32 = 10;
+/// Storage buffers of a pass: rays through copies that are cut out by textures. WebGPU's default limit is eight.
+const STORAGE_BUFFERS: u32 = 11;
 
 /// Bytes of a pixel in all targets that the mesh pass draws into. WebGPU's default limit is 32.
 const COLOR_ATTACHMENT_BYTES: u32 = 48;

@@ -5,11 +5,12 @@ use std::ops::Range;
 use wgpu::BindGroup;
 
 use super::frame_pass::{Building, FramePass};
-use crate::pipelines::field::{FieldLayouts, own_of_copies};
+use crate::pipelines::field::{FieldLayouts, own_of};
+use crate::pipelines::veiled::VeilBindings;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::{Bound, RAY_COUNTS, SUBTILE_COUNTS};
-use isolith_wgsl::ShaderError;
+use isolith_wgsl::{ShaderError, Veil};
 
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
@@ -50,8 +51,22 @@ impl FramePass for TracePass {
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
         let (targets, lists) = (bound.targets, bound.resources.lists());
-        let of_copies = targets.copied.as_ref().map(|copied| self.0.bind_trace_copies(device, targets, lists, copied));
-        self.0.bind_trace(device, targets, lists).into_iter().chain(of_copies.into_iter().flatten()).collect()
+        let plain = self.0.bind_trace(device, targets, lists);
+        let copied = targets.copied.as_ref();
+        let of_copies = copied.map(|copied| self.0.bind_trace_copies(device, targets, lists, copied));
+        // What a scene does not have is never used: any group stands for it.
+        let mut all = [plain.clone(), of_copies.unwrap_or_else(|| plain.clone())].concat();
+        let veil = bound.resources.veil();
+        if veil != Veil::None {
+            let textures = bound.resources.textures().filter(|_| veil == Veil::Textured);
+            let mut bind = |copied: Option<&wgpu::Buffer>| {
+                let own = VeilBindings { copied, materials: bound.materials.clone(), textures: textures.clone() };
+                all.extend(self.0.veiled().bind(device, targets, lists, &own));
+            };
+            bind(None);
+            copied.iter().for_each(|copied| bind(Some(copied)));
+        }
+        all
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
@@ -62,7 +77,8 @@ impl FramePass for TracePass {
                 0 => (&resources.subtile_counts, list * SUBTILE_COUNTS),
                 _ => (&resources.ray_counts, list * RAY_COUNTS),
             };
-            let first = if recorder.frame.is_of_copies(dispatch) { own_of_copies(Pass::Trace) } else { 0 };
+            let pipelines = &recorder.frame.choices[dispatch.params.component as usize].pipelines;
+            let first = own_of(Pass::Trace, pipelines.copies, pipelines.veil);
             let pass = recorder.component(at, first + compacted, |pipelines| &pipelines.trace);
             pass.dispatch_workgroups_indirect(counts.buffer(), word as u64 * 4);
         }
@@ -90,7 +106,7 @@ impl FramePass for SurfacePass {
             let dispatch = &recorder.frame.plan.dispatches[at];
             let list = dispatch.params.list as usize;
             let counts = recorder.resources.ray_counts.buffer();
-            let own = if recorder.frame.is_of_copies(dispatch) { own_of_copies(Pass::Surface) } else { 0 };
+            let own = own_of(Pass::Surface, recorder.frame.is_of_copies(dispatch), Veil::None);
             let pass = recorder.component(at, own, |pipelines| &pipelines.surface);
             pass.dispatch_workgroups_indirect(counts, (list * RAY_COUNTS + 3) as u64 * 4);
         }

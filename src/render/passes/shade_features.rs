@@ -36,6 +36,10 @@ pub struct ShadeFeatures {
     pub copies: bool,
     /// There are many lights, and tiles know those that may reach them.
     pub tiled: bool,
+    /// Rays may pass surfaces, and so meet others from within.
+    pub veiled: bool,
+    /// Not every pixel has shares of its own.
+    pub sparse: bool,
 }
 
 impl ShadeFeatures {
@@ -52,6 +56,8 @@ impl ShadeFeatures {
             shadowed,
             copies: !flat.instancers.is_empty(),
             tiled: false,
+            veiled: flat.veiled().contains(&true),
+            sparse: false,
         }
     }
 
@@ -60,7 +66,8 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let Self { layers, textures, looks, carried, area_lights, image_lit, shadowed, copies, tiled } = self;
+        let Self { layers, textures, looks, carried, area_lights, image_lit, shadowed, copies, tiled, veiled, sparse } =
+            self;
         let options = Options { layers, area_lights, image_lit, shadowed, ..Options::default() };
         let used = [
             (textures, "TEXTURES"),
@@ -68,6 +75,9 @@ impl ShadeFeatures {
             (carried, SCENE_COPIES),
             (copies, "COPIES"),
             (tiled, "LIGHT_TILES"),
+            (veiled, "VEILS"),
+            (sparse, "SPARSE_SHARES"),
+            (!sparse, "FULL_SHARES"),
         ];
         let features: Vec<&str> = used.into_iter().filter_map(|(is_used, name)| is_used.then_some(name)).collect();
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, &features)

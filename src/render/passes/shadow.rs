@@ -2,55 +2,27 @@
 
 use std::ops::Range;
 
-use wgpu::{BindGroup, BindGroupLayout, ComputePipeline};
+use wgpu::{BindGroup, BindGroupLayout};
 
 use super::frame_pass::{Building, FramePass};
 use crate::frame::rect::TILE;
-use crate::recipe::Pass;
+use crate::gpu::Gpu;
+use crate::pipelines::shadow::{ShadowBindings, ShadowKind, ShadowOrders, ShadowPipelines};
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
 use crate::resources::hierarchy::{HierarchyBuffers, Obstacles};
 use crate::resources::layouts::*;
 use crate::resources::mesh_rays::MeshRayBuffer;
 use crate::resources::uniforms::{DispatchParams, UNIFORM_STRIDE};
-use isolith_field::FlatScene;
-use isolith_wgsl::{Evaluator, OpSet, Options, SCENE_COPIES, ShaderError, assemble_with};
-
-bindings! {
-    /// Group 2.
-    ShadowBindings, "shadow targets", COMPUTE {
-        depth: read_texture(false),
-        normal: read_texture(false),
-        lights: read_storage(),
-        shares: write_storage(),
-        states: write_storage(),
-        unfinished: write_storage(),
-        settings: uniform(false),
-        dispatch: uniform(true),
-    }
-}
+use isolith_wgsl::{Options, ShaderError};
 
 /// Pipelines for scenes with other operations that are kept.
 const MOST_PIPELINES: usize = 4;
-
-/// A pipeline for all scenes within a set of operations.
-#[derive(Debug)]
-struct ScenePipeline {
-    ops: OpSet,
-    by_tapes: bool,
-    /// What casts shadows besides components.
-    obstacles: Obstacles,
-    /// Shadows, and occlusion; each is built when a scene first uses it.
-    pipelines: [Option<ComputePipeline>; 2],
-}
 
 /// The layout of the hierarchy for what is met besides components.
 fn layout_of(Obstacles { meshes, copies }: Obstacles) -> usize {
     usize::from(meshes) + 2 * usize::from(copies)
 }
-
-/// Entry points: shadows, and occlusion.
-const ENTRY_POINTS: [&str; 2] = ["shadow", "shadow_occlusion"];
 
 /// The pass.
 #[derive(Debug)]
@@ -60,53 +32,65 @@ pub struct ShadowPass {
     /// By what is met besides components, see `layout_of`.
     hierarchies: [BindGroupLayout; 4],
     /// The one in use comes first.
-    pipelines: Vec<ScenePipeline>,
+    pipelines: Vec<ShadowPipelines>,
+    /// Those that are built beside the frames.
+    orders: ShadowOrders,
 }
 
 impl ShadowPass {
-    /// Chooses the pipelines for a scene, and builds what is missing. `by_tapes`: whether all components have
-    /// tapes; `obstacles`: what casts shadows besides them; `used`: which entry points are.
+    /// Chooses the pipelines for a scene, and builds what is missing. `used`: which entry points are.
     ///
     /// # Errors
     /// A shader file is missing.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
-        flat: &FlatScene,
-        (by_tapes, obstacles): (bool, Obstacles),
+        kind: ShadowKind,
         used: [bool; 2],
         options: Options,
     ) -> Result<(), ShaderError> {
-        let wanted = OpSet::of(flat);
-        let fits = |one: &ScenePipeline| {
-            one.by_tapes == by_tapes
-                && one.obstacles == obstacles
-                && one.ops.covers(&wanted)
-                && one.ops.is_near(&wanted)
-        };
-        match self.pipelines.iter().position(fits) {
+        let queried = self.hierarchies[layout_of(kind.obstacles)].clone();
+        match self.pipelines.iter().position(|one| one.kind.serves(&kind)) {
             Some(at) => self.pipelines[..=at].rotate_right(1),
-            None => {
-                self.pipelines.insert(0, ScenePipeline { ops: wanted, by_tapes, obstacles, pipelines: [None, None] })
-            }
+            None => self.pipelines.insert(0, ShadowPipelines { kind, pipelines: [None, None] }),
         }
         self.pipelines.truncate(MOST_PIPELINES);
-        let Self { layouts, own, hierarchies, pipelines } = self;
-        let queried = &hierarchies[layout_of(obstacles)];
-        let features: Vec<&str> = [(obstacles.meshes, "MESH_RAYS"), (obstacles.copies, SCENE_COPIES)]
-            .into_iter()
-            .filter_map(|(met, feature)| met.then_some(feature))
-            .collect();
-        let ScenePipeline { ops, pipelines, .. } = &mut pipelines[0];
-        let evaluator = if by_tapes { Evaluator::Tape(ops.clone()) } else { Evaluator::Interpreter(ops.clone()) };
-        for ((pipeline, entry_point), _) in pipelines.iter_mut().zip(ENTRY_POINTS).zip(used).filter(|(_, used)| *used) {
-            if pipeline.is_none() {
-                let text = assemble_with(Pass::Shadow.file(), &evaluator, options, &features)?;
-                let groups = [&layouts.view, &layouts.scene, &*own, queried];
-                *pipeline = Some(compute_pipeline(device, Pass::Shadow.label(), text, entry_point, &groups));
+        let Self { layouts, own, pipelines, .. } = self;
+        let ShadowPipelines { kind, pipelines } = &mut pipelines[0];
+        for part in (0..used.len()).filter(|part| used[*part]) {
+            if pipelines[part].is_none() {
+                pipelines[part] = Some(kind.build(device, layouts, [own, &queried], part, options)?);
             }
         }
         Ok(())
+    }
+
+    /// Whether the pipelines for a scene are there. If not, they are built beside the frames; what fails there is built again by
+    /// the frame, which reports why.
+    pub fn is_ready(&mut self, gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Options) -> bool {
+        let has = |one: &ShadowPipelines| used.iter().zip(&one.pipelines).all(|(used, own)| !used || own.is_some());
+        // Samples of a still follow rays to the environment with the pipeline of the lights.
+        let is_there = self.pipelines.iter().any(|one| one.kind.serves(kind) && has(one));
+        if is_there || self.orders.has_failed(kind, used) {
+            return true;
+        }
+        self.orders.order(gpu, &self.layouts, kind, used, options);
+        false
+    }
+
+    /// Takes pipelines that have become ready. Returns whether there were any, or some could not be built.
+    pub fn collect(&mut self) -> bool {
+        let Some(built) = self.orders.collect() else { return false };
+        if let Some(built) = built {
+            self.pipelines.insert(0, built);
+            self.pipelines.truncate(MOST_PIPELINES);
+        }
+        true
+    }
+
+    /// Whether some are being built.
+    pub fn is_building(&self) -> bool {
+        self.orders.is_building()
     }
 }
 
@@ -120,6 +104,7 @@ impl FramePass for ShadowPass {
                 HierarchyBuffers::layout(device, obstacles)
             }),
             pipelines: Vec::new(),
+            orders: ShadowOrders::default(),
         })
     }
 
@@ -146,11 +131,12 @@ impl FramePass for ShadowPass {
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
-        let Some(ScenePipeline { pipelines, .. }) = self.pipelines.first() else { return };
+        let Some(ShadowPipelines { pipelines, .. }) = self.pipelines.first() else { return };
         let used = recorder.resources.shadows.used.parts();
         let (scene, [_, own], [_, hierarchy]) = (recorder.scene(), recorder.groups(0), recorder.groups(1));
         for at in dispatches {
-            let [x, y] = recorder.frame.plan.dispatches[at].tiles();
+            let spacing = recorder.resources.shadows.used.spacing;
+            let [x, y] = recorder.frame.plan.dispatches[at].tiles().map(|tiles| tiles.div_ceil(spacing));
             const { assert!(TILE == 8, "the size of a workgroup") };
             // Occlusion first: rays to the environment look where its cones are in doubt.
             for (pipeline, _) in pipelines.iter().zip(used).rev().filter(|(_, used)| *used) {

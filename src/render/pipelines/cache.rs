@@ -16,7 +16,7 @@ use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
 use isolith_field::FlatScene;
 use isolith_guard::guarded;
-use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError};
+use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, Veil};
 
 /// Limit of cached specialized pipelines. The cache evicts the least recently used first.
 pub const MAX_PIPELINES: usize = 1024;
@@ -41,8 +41,27 @@ const MAX_INTERPRETERS: usize = 8;
 #[derive(Debug)]
 struct InterpreterPipelines {
     ops: OpSet,
-    /// For components, and for types of instancers: each is built when needed.
-    walked: [WalkedPipelines; 2],
+    /// For each of [`WALKED`]: built when needed.
+    walked: [WalkedPipelines; WALKED.len()],
+}
+
+/// Kinds of pipelines that walk: whether for types of instancers, and what rays may pass.
+const WALKED: [(bool, Veil); 6] = [
+    (false, Veil::None),
+    (true, Veil::None),
+    (false, Veil::Plain),
+    (true, Veil::Plain),
+    (false, Veil::Textured),
+    (true, Veil::Textured),
+];
+
+/// What rays may pass of a scene.
+pub fn veil_of(flat: &FlatScene) -> Veil {
+    match flat.veiled().contains(&true) {
+        false => Veil::None,
+        true if flat.has_opacity_textures() => Veil::Textured,
+        true => Veil::Plain,
+    }
 }
 
 /// Pipelines that walk through entries or tapes.
@@ -117,7 +136,9 @@ impl PipelineCache {
         let evaluator = Evaluator::Interpreter(ops.clone());
         let entries = Some(Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?));
         let plain = WalkedPipelines { entries, ..WalkedPipelines::default() };
-        let interpreters = vec![InterpreterPipelines { ops, walked: [plain, WalkedPipelines::default()] }];
+        let mut walked: [WalkedPipelines; WALKED.len()] = Default::default();
+        walked[0] = plain;
+        let interpreters = vec![InterpreterPipelines { ops, walked }];
         let shared = Arc::new(CompileContext { gpu: gpu.clone(), layouts: layouts.clone(), field, options });
         Ok(Self {
             shared,
@@ -215,20 +236,25 @@ impl PipelineCache {
         }
         let by_tape = |i: usize| strategy != EvalStrategy::Interpreter && has_tapes.get(i) == Some(&true);
         let open: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_none()).collect();
-        let is_of_copies = |i: usize| flat.components[i].instanced.is_some();
+        let (veiled, veil) = (flat.veiled(), veil_of(flat));
+        let kind_of = |i: usize| {
+            let veil = if veiled.get(i) == Some(&true) { veil } else { Veil::None };
+            let kind = (flat.components[i].instanced.is_some(), veil);
+            WALKED.iter().position(|walked| *walked == kind).expect("all kinds are there")
+        };
         if !open.is_empty() {
-            let needs = |copies: bool| {
-                let of_kind = || open.iter().filter(|i| is_of_copies(**i) == copies);
+            let needs = |kind: usize| {
+                let of_kind = || open.iter().filter(|i| kind_of(**i) == kind);
                 let tapes =
                     |modified: bool| of_kind().any(|i| by_tape(*i) && flat.components[*i].is_modified() == modified);
                 [of_kind().next().is_some(), tapes(false), tapes(true)]
             };
-            self.choose_interpreter(flat, [false, true].map(needs))?;
+            self.choose_interpreter(flat, std::array::from_fn(needs))?;
         }
         self.forget_oldest();
         let interpreter = &self.interpreters[0];
         let walked = |i: usize| {
-            let WalkedPipelines { entries, tape, tape_modified } = &interpreter.walked[usize::from(is_of_copies(i))];
+            let WalkedPipelines { entries, tape, tape_modified } = &interpreter.walked[kind_of(i)];
             let tape = if flat.components[i].is_modified() { tape_modified } else { tape };
             match tape {
                 Some(pipelines) if by_tape(i) => PipelineChoice { pipelines: pipelines.clone(), mode: EvalMode::Tape },
@@ -290,13 +316,13 @@ impl PipelineCache {
     }
 
     /// Moves interpreter pipelines to the front that know all shapes of the scene and few others. Every scene pays for
-    /// all that its pipeline holds, because lavapipe executes every arm of a `switch`. `needs` tells for components, and
-    /// for types of instancers, whether there are any, and some with tapes without, and with, modifiers.
-    fn choose_interpreter(&mut self, flat: &FlatScene, needs: [[bool; 3]; 2]) -> Result<(), ShaderError> {
+    /// all that its pipeline holds, because lavapipe executes every arm of a `switch`. `needs` tells for each kind of
+    /// [`WALKED`] whether there are components, and some with tapes without, and with, modifiers.
+    fn choose_interpreter(&mut self, flat: &FlatScene, needs: [[bool; 3]; WALKED.len()]) -> Result<(), ShaderError> {
         let wanted = OpSet::of(flat);
         let CompileContext { gpu, layouts, field, options } = &*self.shared;
-        let build = |evaluator, copies| {
-            field.build(&gpu.device, layouts, &evaluator, Options { copies, ..*options }).map(Arc::new)
+        let build = |evaluator, (copies, veil)| {
+            field.build(&gpu.device, layouts, &evaluator, Options { copies, veil, ..*options }).map(Arc::new)
         };
         let fits =
             |interpreter: &InterpreterPipelines| interpreter.ops.covers(&wanted) && interpreter.ops.is_near(&wanted);
@@ -309,14 +335,14 @@ impl PipelineCache {
         }
         let InterpreterPipelines { ops, walked } = &mut self.interpreters[0];
         let [plain, modified] = tape_evaluators(ops);
-        for ((WalkedPipelines { entries, tape, tape_modified }, needed), copies) in
-            walked.iter_mut().zip(needs).zip([false, true])
+        for ((WalkedPipelines { entries, tape, tape_modified }, needed), kind) in
+            walked.iter_mut().zip(needs).zip(WALKED)
         {
             let of_entries = Evaluator::Interpreter(ops.clone());
             let slots = [(entries, of_entries), (tape, plain.clone()), (tape_modified, modified.clone())];
             for ((slot, evaluator), _) in slots.into_iter().zip(needed).filter(|(_, needed)| *needed) {
                 if slot.is_none() {
-                    *slot = Some(build(evaluator, copies)?);
+                    *slot = Some(build(evaluator, kind)?);
                     self.built += 1;
                 }
             }

@@ -5,10 +5,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
+use super::field_buffers::FieldBuffers;
+use crate::pipelines::veiled::VeiledLayouts;
 use crate::recipe::Pass;
 use crate::resources::layouts::*;
 use crate::resources::targets::Targets;
-use isolith_wgsl::{Evaluator, Options, ShaderError, assemble};
+use isolith_wgsl::{Evaluator, Options, ShaderError, Veil, assemble};
 
 bindings! {
     /// Group 2 of the cone pass.
@@ -89,6 +91,8 @@ pub struct FieldPipelines {
     pub surface: ComputePipeline,
     /// Whether they draw types of instancers.
     pub copies: bool,
+    /// What rays may pass.
+    pub veil: Veil,
     /// One bit for each pass that has been dispatched.
     used: AtomicU32,
 }
@@ -119,11 +123,11 @@ pub fn field_file(stage: Pass, options: Options) -> &'static str {
     if options.copies && stage == Pass::Cone { "copy/cone.wgsl" } else { stage.file() }
 }
 
-/// The first own bind group of a pass for types of instancers.
-pub fn own_of_copies(pass: Pass) -> usize {
+/// The first own bind group of a pass for pipelines for types of instancers, and for those that rays may pass.
+pub fn own_of(pass: Pass, copies: bool, veil: Veil) -> usize {
     match pass {
-        Pass::Trace => 2,
-        Pass::Surface => 1,
+        Pass::Trace => 4 * usize::from(veil != Veil::None) + 2 * usize::from(copies),
+        Pass::Surface => usize::from(copies),
         _ => 0,
     }
 }
@@ -136,23 +140,7 @@ pub struct FieldLayouts {
     surface: BindGroupLayout,
     trace_copies: BindGroupLayout,
     surface_copies: BindGroupLayout,
-}
-
-/// Buffers that carry data from pass to pass.
-#[derive(Clone, Copy, Debug)]
-pub struct FieldBuffers<'a> {
-    /// Subtiles that the cones keep, list after list; then the subtiles with hits.
-    pub subtiles: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatch, and its length.
-    pub subtile_counts: &'a wgpu::Buffer,
-    /// Pixels whose march continues, list after list.
-    pub rays: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatches over these pixels, and over subtiles with hits.
-    pub ray_counts: &'a wgpu::Buffer,
-    /// Placeholder: any other buffer.
-    pub nothing: &'a wgpu::Buffer,
-    /// Counters, see `shaders/common/counts.wgsl`.
-    pub march_counts: &'a wgpu::Buffer,
+    veiled: VeiledLayouts,
 }
 
 impl FieldLayouts {
@@ -164,6 +152,7 @@ impl FieldLayouts {
             surface: SurfaceBindings::layout(device),
             trace_copies: TraceCopiesBindings::layout(device),
             surface_copies: SurfaceCopiesBindings::layout(device),
+            veiled: VeiledLayouts::new(device),
         }
     }
 
@@ -186,15 +175,30 @@ impl FieldLayouts {
         };
         Ok(FieldPipelines {
             cone: pipeline(Pass::Cone, "cone", &self.cone)?,
-            trace: pipeline(Pass::Trace, "trace", if options.copies { &self.trace_copies } else { &self.trace })?,
+            trace: pipeline(Pass::Trace, "trace", self.of_trace(options))?,
             surface: pipeline(
                 Pass::Surface,
                 "surface_pass",
                 if options.copies { &self.surface_copies } else { &self.surface },
             )?,
             copies: options.copies,
+            veil: options.veil,
             used: AtomicU32::new(0),
         })
+    }
+
+    /// The layout of the targets of the trace pass.
+    fn of_trace(&self, options: Options) -> &BindGroupLayout {
+        match (options.veil, options.copies) {
+            (Veil::None, false) => &self.trace,
+            (Veil::None, true) => &self.trace_copies,
+            (veil, copies) => self.veiled.layout(veil, copies),
+        }
+    }
+
+    /// Those for components that rays may pass.
+    pub fn veiled(&self) -> &VeiledLayouts {
+        &self.veiled
     }
 
     /// Bind group of the cone pass.

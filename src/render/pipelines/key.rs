@@ -78,7 +78,10 @@ impl Templates {
         lengths: &[Option<f64>],
     ) -> Vec<Option<PipelineKey>> {
         let keys = self.of_code(flat, strategy, lengths);
-        flat.components.iter().zip(keys).map(|(c, key)| key.map(|key| key.of_copies(c))).collect()
+        // What rays may pass needs the surface where they meet it, and is drawn by tapes.
+        let veiled = flat.veiled();
+        let keys = flat.components.iter().zip(keys).map(|(c, key)| key.map(|key| key.of_copies(c)));
+        keys.enumerate().map(|(i, key)| key.filter(|_| veiled.get(i) != Some(&true))).collect()
     }
 
     /// The same without a difference between components and types of instancers.

@@ -3,6 +3,9 @@
 pub mod cache;
 pub mod evaluators;
 pub mod field;
+pub mod field_buffers;
 pub mod key;
 pub mod prewarm;
+pub mod shadow;
 pub mod strategy;
+pub mod veiled;

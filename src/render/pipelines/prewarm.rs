@@ -1,7 +1,8 @@
 //! Prewarms pipelines: has the driver compile them before a frame needs them, on a separate device.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::pipelines::field::{FieldBuffers, FieldLayouts, FieldPipelines};
+use crate::pipelines::field::{FieldLayouts, FieldPipelines};
+use crate::pipelines::field_buffers::FieldBuffers;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::layouts::{
     BRICKS_FORMAT, CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window,
@@ -97,6 +98,37 @@ impl Prewarmer {
             options,
             gpu: gpu.clone(),
         })
+    }
+
+    /// The device, and the layouts on it.
+    pub fn device(&self) -> (&Gpu, &Layouts) {
+        (&self.gpu, &self.layouts)
+    }
+
+    /// Dispatches a pipeline of the pass `shadow` over no work.
+    ///
+    /// # Errors
+    /// The device reports an error.
+    pub fn meet_shadow(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        own: &wgpu::BindGroup,
+        hierarchy: &wgpu::BindGroup,
+    ) -> Result<(), GpuError> {
+        let label = Some("shadow ahead of its use");
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &self.view, &[]);
+            pass.set_bind_group(1, &self.scene[0], &[0, 0]);
+            pass.set_bind_group(2, own, &[0]);
+            pass.set_bind_group(3, hierarchy, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait()?;
+        self.gpu.check()
     }
 
     /// Compiles the pipeline of `evaluator` by dispatching it over no work.

@@ -31,7 +31,7 @@ pub struct Sampling {
 pub struct Frame {
     pub(crate) plan: FramePlan,
     pub(super) keys: Vec<Option<PipelineKey>>,
-    pub(super) choices: Vec<PipelineChoice>,
+    pub(crate) choices: Vec<PipelineChoice>,
     pub(super) next: usize,
     /// The cost model at the start: later learning must not move the progress bar.
     pub(super) cost_model: CostModel,

@@ -5,7 +5,7 @@ use super::resources::{FrameResources, Groups, SlotState};
 use super::scene::ShadedScene;
 use super::timings::Stamps;
 use crate::gpu::Gpu;
-use crate::pipelines::field::{FieldPipelines, own_of_copies};
+use crate::pipelines::field::{FieldPipelines, own_of};
 use crate::recipe::{Extent, Pass};
 use crate::resources::accumulation::Accumulation;
 use crate::resources::targets::{Target, Targets};
@@ -184,8 +184,9 @@ pub fn meet(gpu: &Gpu, groups: &Groups, pipelines: &FieldPipelines) -> bool {
     pass.set_bind_group(3, &groups.dispatch_params, &[0]);
     for field_pass in fresh {
         pass.set_pipeline(pipelines.pipeline(field_pass));
-        let own = if pipelines.copies { own_of_copies(field_pass) } else { 0 };
-        pass.set_bind_group(2, &groups.own[field_pass as usize][own], &[]);
+        let own = own_of(field_pass, pipelines.copies, pipelines.veil);
+        let Some(own) = groups.own[field_pass as usize].get(own) else { continue };
+        pass.set_bind_group(2, own, &[]);
         pass.dispatch_workgroups(0, 0, 0);
     }
     drop(pass);

@@ -16,7 +16,8 @@ use crate::frame::plan::{Dispatch, FramePlan, Room};
 use crate::frame::rect::TILE;
 use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
-use crate::pipelines::field::FieldBuffers;
+use crate::pipelines::cache::veil_of;
+use crate::pipelines::field_buffers::FieldBuffers;
 use crate::recipe::Pass;
 use crate::resources::accumulation::Accumulation;
 use crate::resources::buffers::SyncedBuffer;
@@ -28,6 +29,7 @@ use crate::resources::uniforms::{DispatchParams, GpuView, UNIFORM_STRIDE, stride
 use isolith_field::light::environment_map::{PlacedMap, map_words};
 use isolith_field::{FlatScene, GpuLight};
 use isolith_geometry::Camera;
+use isolith_wgsl::Veil;
 
 /// Bytes of a subtile in a list.
 const SUBTILE_BYTES: usize = 12;
@@ -117,6 +119,8 @@ pub struct FrameResources {
     held_map: Option<Option<PlacedMap>>,
     mesh_materials: SyncedBuffer,
     textures: TextureResources,
+    /// What rays may pass of the scene.
+    veil: Veil,
     dispatch_params: SyncedBuffer,
     subtiles: SyncedBuffer,
     pub subtile_counts: SyncedBuffer,
@@ -142,6 +146,7 @@ impl FrameResources {
             held_map: None,
             mesh_materials: storage("mesh materials"),
             textures: TextureResources::default(),
+            veil: Veil::None,
             dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
             subtiles: storage("subtiles"),
             subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
@@ -212,8 +217,10 @@ impl FrameResources {
         self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
         let tiles = bytes_of_light_tiles(lights.len(), size, device.limits().max_storage_buffer_binding_size);
         let tiles_are_new = std::mem::replace(&mut self.light_tiles.1, tiles.is_some()) != tiles.is_some();
+        let veil = veil_of(flat);
         let uploads = [
             tiles_are_new,
+            std::mem::replace(&mut self.veil, veil) != veil,
             self.light_tiles.0.reserve(device, tiles.unwrap_or(0) as usize),
             self.upload_map(gpu, flat),
             self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
@@ -239,6 +246,12 @@ impl FrameResources {
             self.counts.reset(gpu, components, size),
         ];
         resets.contains(&true)
+    }
+
+    /// Makes the frame show the first surfaces that have any opacity.
+    pub fn show_first_surfaces(&mut self, gpu: &Gpu) {
+        self.first_view.first_surfaces = 1;
+        self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&self.first_view));
     }
 
     /// Uploads the view of another sample of the frame.
@@ -341,6 +354,11 @@ impl FrameResources {
     /// The materials of the meshes.
     pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
         self.mesh_materials.binding()
+    }
+
+    /// What rays may pass of the scene.
+    pub fn veil(&self) -> Veil {
+        self.veil
     }
 
     /// The textures, if the scene uses some.

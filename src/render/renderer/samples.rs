@@ -84,6 +84,7 @@ impl Renderer {
     /// Makes the frame render this sample, moved by `offset` pixels.
     pub(super) fn set_sample(&mut self, frame: &mut Frame, sampling: Sampling, offset: DVec2) {
         frame.sampling = Some(sampling);
+        frame.shade_features.sparse = false;
         self.resources.set_sample(&self.gpu, sampling.index, sampling.is_transparent, offset);
     }
 }

@@ -12,6 +12,7 @@ use crate::frame::copies_cost::walk_leaves;
 use crate::gpu::Gpu;
 use crate::gpu::readback::read_words;
 use crate::passes::Passes;
+use crate::pipelines::shadow::ShadowKind;
 use crate::recipe::Pass;
 use crate::resources::hierarchy::{Obstacles, query_components};
 use crate::resources::shadows::{SceneQuery, ShadowSettings};
@@ -81,17 +82,35 @@ impl ShadowWork {
         settings.is_on().then(|| Self { settings, cost: QueryCost::of(flat, chosen), walk, left })
     }
 
+    /// The same with shares for one pixel in so many along each axis.
+    pub fn spaced(mut self, spacing: u32) -> Self {
+        self.settings.spacing = spacing;
+        self
+    }
+
+    /// What pipelines it needs, with those of samples; `meshes`: whether there are some.
+    pub fn pipelines(&self, flat: &FlatScene, meshes: bool) -> (ShadowKind, [bool; 2]) {
+        let obstacles = Obstacles { meshes, copies: !flat.instancers.is_empty() };
+        (ShadowKind::of(flat, self.cost.by_tapes, obstacles), parts_of_still(&self.settings))
+    }
+
     /// Expected leaves per pixel.
     pub fn per_pixel(&self) -> f64 {
         let lights = f64::from(self.settings.lights);
         let (occlusion, around) = if self.settings.cones > 0 { (OCCLUSION_EVALUATIONS, 1.0) } else { (0.0, 0.0) };
-        self.cost.leaves * (lights * LIGHT_EVALUATIONS + occlusion) + self.walk * (lights + around)
+        let all = self.cost.leaves * (lights * LIGHT_EVALUATIONS + occlusion) + self.walk * (lights + around);
+        all / f64::from(self.settings.spacing.pow(2))
     }
 
     /// Numbers of lights with and without shadows.
     pub fn lights(&self) -> [usize; 2] {
         [self.settings.lights as usize, self.left]
     }
+}
+
+/// Which entry points a picture and its samples use: samples follow rays to the environment with the pipeline of the lights.
+fn parts_of_still(settings: &ShadowSettings) -> [bool; 2] {
+    [settings.is_on(), settings.cones > 0]
 }
 
 /// A scene as a frame sees it.
@@ -124,9 +143,8 @@ pub fn upload(
     let SeenScene { flat, meshes, camera, size, standpoints } = seen;
     let has_meshes = meshes.iter().any(Option::is_some);
     let obstacles = Obstacles { meshes: has_meshes, copies: !flat.instancers.is_empty() };
-    // Samples of a still follow rays to the environment with the pipeline of the lights.
-    let used = [settings.is_on(), settings.cones > 0];
-    passes.shadow.prepare(&gpu.device, flat, (cost.by_tapes, obstacles), used, options)?;
+    let used = parts_of_still(&settings);
+    passes.shadow.prepare(&gpu.device, ShadowKind::of(flat, cost.by_tapes, obstacles), used, options)?;
     let mut components = query_components(flat, camera.position, &standpoints.all);
     if cost.by_tapes {
         for ((component, tree), at) in components.iter_mut().zip(&chosen.trees).zip(&standpoints.all) {

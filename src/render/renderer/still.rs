@@ -175,8 +175,8 @@ impl Renderer {
         Ok(read_color(&self.gpu, &self.resources.slot(frame.slot).targets.color)?)
     }
 
-    /// The linear base color at the center of each pixel, black without a hit. `flat` is the scene as of
-    /// [`FlatScene::in_base_colors`].
+    /// The linear base color at the center of each pixel, black without a hit, with depths, normals and leaves: those of
+    /// the first surfaces that have any opacity. `flat` is the scene as of [`FlatScene::in_base_colors`].
     pub fn render_base_colors(
         &mut self,
         flat: &FlatScene,
@@ -184,8 +184,9 @@ impl Renderer {
         camera: &Camera,
         size: [u32; 2],
         progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<Vec<[f32; 3]>, RenderError> {
+    ) -> Result<(Vec<[f32; 3]>, GBuffer), RenderError> {
         let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
+        self.resources.show_first_surfaces(&self.gpu);
         self.accumulate(&mut frame, true);
         while !frame.is_done() {
             if !progress(frame.progress()) {
@@ -202,6 +203,6 @@ impl Renderer {
                 *color = of_meshes[pixel];
             }
         }
-        Ok(colors)
+        Ok((colors, buffers))
     }
 }

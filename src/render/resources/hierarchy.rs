@@ -84,13 +84,15 @@ impl SceneLimits {
 /// empty if all rows are relative to the origins of their components.
 pub fn query_components(flat: &FlatScene, origin: DVec3, standpoints: &[Standpoint]) -> Vec<GpuComponent> {
     let at_origin = Standpoint::at_origin();
+    let translucency = flat.translucency();
     let all = flat.components.iter().enumerate().map(|(i, component)| {
         let at = standpoints.get(i).unwrap_or(&at_origin);
         // In narrow pictures the eye lies elsewhere, but a query has one origin for all components.
         // Points are mapped to the space of a copy.
         let origin = if component.instanced.is_some() { DVec3::ZERO } else { origin };
         let eye = origin - component.origin - at.shift;
-        GpuComponent::new(component, &Standpoint { ray_origin_depth: 0.0, eye, ..*at })
+        let translucency = translucency.get(i).map_or(0.0, |share| *share as f32);
+        GpuComponent { translucency, ..GpuComponent::new(component, &Standpoint { ray_origin_depth: 0.0, eye, ..*at }) }
     });
     all.collect()
 }

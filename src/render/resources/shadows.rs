@@ -37,8 +37,8 @@ pub struct ShadowSettings {
     pub occlusion_radius: f32,
     /// See the scene's `Shadowing`.
     pub occlusion_strength: f32,
-    /// Padding.
-    pub padding: f32,
+    /// Pixels from one with shares to the next, along each axis: 1, or 2 while something moves.
+    pub spacing: u32,
 }
 
 /// Shares in a word.
@@ -66,7 +66,7 @@ impl ShadowSettings {
             fineness: cone_fineness(shadowing.shadow_quality) as f32,
             occlusion_radius: shadowing.occlusion_radius as f32,
             occlusion_strength: shadowing.occlusion_strength as f32,
-            padding: 0.0,
+            spacing: 1,
         }
     }
 
@@ -187,10 +187,10 @@ impl ShadowBuffers {
         self.used.is_on().then(|| [self.settings.binding(), self.shares.binding()])
     }
 
-    /// Uploads the number of the sample.
+    /// Uploads the number of the sample. Samples have shares for every pixel.
     pub fn set_sample(&mut self, gpu: &Gpu, sample: u32) {
         if self.used.is_on() {
-            self.used.sample = sample;
+            (self.used.sample, self.used.spacing) = (sample, 1);
             self.settings.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&self.used));
         }
     }

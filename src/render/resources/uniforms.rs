@@ -44,8 +44,8 @@ pub struct GpuView {
     pub sample_index: u32,
     /// 1: the background is without color and coverage.
     pub transparent: u32,
-    /// Padding.
-    pub padding_0: u32,
+    /// 1: whatever has any opacity covers all samples.
+    pub first_surfaces: u32,
     /// Padding.
     pub padding_1: u32,
     /// Padding.
@@ -120,6 +120,14 @@ pub struct GpuComponent {
     pub flush_near: f32,
     /// Of the type of an instancer: its index among the types.
     pub kind: u32,
+    /// Share of the light that passes it, for queries of the whole scene.
+    pub translucency: f32,
+    /// Padding.
+    pub padding_0: u32,
+    /// Padding.
+    pub padding_1: u32,
+    /// Padding.
+    pub padding_2: u32,
 }
 
 /// Rounding distance of two coincident faces, relative to the coordinates that they are computed from: each moves by a
@@ -183,6 +191,10 @@ impl GpuComponent {
             flush: flush(component, at) as f32,
             flush_near: flush_near(component, at) as f32,
             kind: component.instanced.map_or(0, |of| of.kind),
+            translucency: 0.0,
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
         }
     }
 }

@@ -4,7 +4,8 @@ use super::*;
 use crate::{
     BlendKernel, BlendOverride, CameraNode, ColorTexture, Environment, Group, HeightTexture, Light, LightKind,
     Material, MaterialId, MeshNode, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, NormalTexture, Object,
-    Operator, ParamOwner, ParamPath, Part, RadiusUnit, RoughnessTexture, Scene, Shape, ShapeKind, Textures, check,
+    OpacityTexture, Operator, ParamOwner, ParamPath, Part, RadiusUnit, RoughnessTexture, Scene, Shape, ShapeKind,
+    Textures, check,
 };
 
 /// A node of each kind, and objects with every shape and every modifier.
@@ -44,11 +45,12 @@ fn textured() -> Vec<Material> {
     let colors = ColorTexture::variants().into_iter().map(|(color, ..)| color);
     let roughnesses = RoughnessTexture::variants().into_iter().map(|(roughness, ..)| roughness);
     let heights = HeightTexture::variants().into_iter().map(|(height, ..)| height);
-    let all = colors.zip(roughnesses).zip(heights).enumerate();
-    all.map(|(i, ((new_color, new_roughness), new_height))| {
+    let opacities = OpacityTexture::variants().into_iter().map(|(opacity, ..)| opacity);
+    let all = colors.zip(roughnesses).zip(heights.zip(opacities)).enumerate();
+    all.map(|(i, ((new_color, new_roughness), (new_height, new_opacity)))| {
         let mut textures = Textures::triplanar();
-        if let Textures::Triplanar { color, roughness, normal, height, .. } = &mut textures {
-            (*color, *roughness, *height) = (new_color, new_roughness, new_height);
+        if let Textures::Triplanar { color, roughness, normal, height, opacity, .. } = &mut textures {
+            (*color, *roughness, *height, *opacity) = (new_color, new_roughness, new_height, new_opacity);
             *normal = normals[i % normals.len()].clone();
         }
         Material { textures, ..Material::default() }

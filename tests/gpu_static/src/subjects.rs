@@ -133,6 +133,7 @@ const OPTIONS: Options = Options {
     image_lit: true,
     shadowed: false,
     copies: false,
+    veil: isolith::wgsl::Veil::None,
 };
 
 /// Passes that evaluate a field, with their entry points.
