@@ -14,7 +14,8 @@ use isolith::field::{FlatScene, RayLimits, flatten};
 use isolith::geometry::Ray;
 use isolith::render::copy_probe::{CopyQuery, placed, walked};
 use isolith::scene::{
-    DynamicKind, Instancer, Lattice, Mask, Node, NodeId, NodeKind, Object, Points, Scene, Shape, Snap, Variation,
+    Attachment, CurvePreset, Dynamic, DynamicKind, Instancer, Lattice, Mask, MaskJoin, MaskKind, MaskSlot, Node,
+    NodeId, NodeKind, Object, Points, Scene, Shape, Snap, TextureImage, Variation,
 };
 
 /// A scene of one instancer with two types: a box off its origin and a ball.
@@ -143,7 +144,37 @@ pub fn limited() -> Vec<(&'static str, Scene)> {
         ("curve", scene_on(of(Lattice::Curve { spacing: 0.9 }), tube)),
     ]);
     all.extend(DynamicKind::ALL.iter().map(|kind| (kind.label(), scene_of(of(grid), &[*kind]))));
+    let joined = Instancer { masks: joined_masks(), ..of(Lattice::Grid { counts: [9, 1, 9], spacing: [1.0; 3] }) };
+    all.push(("joined masks", scene_of(joined, &[])));
+    all.push(("placed wind", with_placed_wind(scene_of(of(grid), &[]))));
     all
+}
+
+/// Masks by images, with curves, joined in every way.
+pub fn joined_masks() -> Vec<MaskSlot> {
+    let image = Attachment::<TextureImage>::painted("dots.png", [6, 5], |x, y| [(37 * x + 60 * y) as u8; 3]);
+    let image = |tiled| Mask::Image { image: image.clone(), width: 5.0, length: 6.0, offset: [0.4, 0.0, -0.7], tiled };
+    let noise = Mask::Noise { size: 2.0, threshold: 0.5, softness: 0.6, seed: 7 };
+    let slot = |mask, join, curve: CurvePreset| MaskSlot { join, curve: curve.curve(), ..MaskSlot::from(mask) };
+    let height = Mask::Height { from: -2.0, to: 8.0, softness: 6.0 };
+    vec![
+        slot(image(true), MaskJoin::Multiply, CurvePreset::Ease),
+        slot(noise, MaskJoin::Add, CurvePreset::Terraces),
+        MaskSlot { inverted: true, ..slot(image(false), MaskJoin::Subtract, CurvePreset::Sharp) },
+        slot(Mask::Radius { inner: 0.0, outer: 6.0 }, MaskJoin::Maximum, CurvePreset::Peak),
+        slot(height, MaskJoin::Minimum, CurvePreset::Linear),
+    ]
+}
+
+/// The scene with wind from a source that is placed near its copies.
+fn with_placed_wind(mut scene: Scene) -> Scene {
+    let mut wind = DynamicKind::Wind.default_dynamic();
+    if let Dynamic::Wind { radius, source, core, radial, angle, .. } = &mut wind {
+        (*radius, *source, *core, *radial, *angle) = (4.0, [1.5, 0.5, -1.0], 0.3, 0.8, 50.0);
+    }
+    let top = Node::clone(scene.children(None).next().expect("the instancer"));
+    scene.replace(top.moving(wind)).expect("a valid node");
+    scene
 }
 
 /// A sequence of numbers from 0 to 1 that fill their range evenly.
@@ -226,7 +257,11 @@ fn probed() -> Vec<(String, Scene, DVec3)> {
         let masks = vec![Mask::Noise { size: 9.0, threshold: 0.5, softness: 0.3, seed: 2 }.into()];
         let endless = Instancer { lattice, masks, variation: varied(), seed: 4, ..Instancer::default() };
         let dynamics = [DynamicKind::Wind, DynamicKind::CurlNoise, DynamicKind::Bob];
-        all.push((format!("endless at {far}"), scene_of(endless, &dynamics), DVec3::new(far, 3.0, -far)));
+        let eye = DVec3::new(far, 3.0, -far);
+        all.push((format!("endless at {far}"), scene_of(endless.clone(), &dynamics), eye));
+        // Without the height and the radius, which leave nothing so far away.
+        let masks = joined_masks().into_iter().take(2).collect();
+        all.push((format!("joined at {far}"), scene_of(Instancer { masks, ..endless }, &[]), eye));
     }
     all
 }
@@ -409,4 +444,11 @@ fn bad_input_is_told_with_the_node() {
     let plane = Node::new("Plane", NodeKind::Object(Object { shape: Shape::Plane {}, material }));
     endless.insert(Some(top), 0, plane).unwrap();
     told(&endless, "has no end");
+    let mut missing = Instancer::grid([2; 3], [2.0; 3]);
+    missing.masks = vec![MaskKind::Noise.default_mask().into(), MaskKind::Image.default_mask().into()];
+    let missing = scene_of(missing, &[]);
+    told(&missing, "has no image for its mask 2");
+    let flat = flatten(&missing, 0.0).unwrap();
+    assert_eq!(flat.warnings[0].node, flat.instancers[0].id);
+    assert!(!flat.components.is_empty(), "the rest is drawn");
 }

@@ -14,7 +14,7 @@ use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use super::survey::Survey;
 use isolith_geometry::Aabb;
-use isolith_scene::{Instancer, Lattice, MAX_TYPES, MaterialId, Node, NodeId, NodeKind, Operator, Scene, Snap};
+use isolith_scene::{Instancer, Lattice, MAX_TYPES, Mask, MaterialId, Node, NodeId, NodeKind, Operator, Scene, Snap};
 
 /// See [`MAX_PLACES`].
 const PLACES: &str = "the number of copies that stand on a surface, along a curve or in rings";
@@ -111,6 +111,7 @@ fn add_types<'a>(
     add: &mut AddComponent<'a, '_>,
 ) -> Result<(), FlattenError> {
     let NodeKind::Instancer(instancer) = &node.kind else { unreachable!("it is an instancer") };
+    warn_of_images(flat, node, instancer);
     let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
     let places = places(flat, of, (node, instancer), world_from_local)?;
     let sizes: Vec<CopyType> =
@@ -172,6 +173,15 @@ fn places(
 /// Whether its copies stand on a surface.
 fn needs_ground(instancer: &Instancer) -> bool {
     instancer.snap != Snap::Off || matches!(instancer.lattice, Lattice::Scatter { .. })
+}
+
+/// Masks whose image is missing.
+fn warn_of_images(flat: &mut FlatScene, node: &Node, instancer: &Instancer) {
+    for (at, slot) in instancer.masks.iter().enumerate() {
+        if matches!(&slot.mask, Mask::Image { image, .. } if image.content().is_none()) {
+            warn(flat, node, &format!("has no image for its mask {}, which hides nothing until it has one", at + 1));
+        }
+    }
 }
 
 /// Copies join others by hard union only.

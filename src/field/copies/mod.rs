@@ -13,6 +13,8 @@ mod hash;
 pub(crate) mod instancer;
 pub(crate) mod list;
 mod look;
+mod mask_curve;
+mod masks;
 pub(crate) mod moved_scene;
 mod noise;
 #[cfg(test)]
@@ -27,11 +29,15 @@ pub use eval::{
 };
 pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};
 pub use hash::{Channel, copy_hash, copy_random, copy_randoms};
-pub use instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, MAX_PLACES, Place, PlaceList, Placement};
+pub use instancer::{
+    FlatDynamic, FlatInstancer, FlatLattice, FlatMask, FlatMaskImage, MAX_PLACES, Place, PlaceList, Placement,
+};
 pub use look::{look_at, look_color, look_mixture, look_varied};
+pub use mask_curve::FlatCurve;
+pub use masks::{copy_mask, copy_masks};
 pub use noise::{Coordinate, copy_curl, copy_noise_1, copy_noise_2};
 pub use trace::{CopyRay, copy_ray, visit_copies};
-pub use variation::{Copy, CopyMaterial, copy_mask, copy_material, copy_of_cell, copy_of_place};
+pub use variation::{Copy, CopyMaterial, copy_material, copy_of_cell, copy_of_place};
 pub use walk::{
     CopyCone, CopyVisit, MAX_SLABS, WalkCounts, copies_along, copies_along_every_cell, copy_sphere, walk_axis,
 };
