@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec2, DVec3};
 
-use isolith::document::Document;
 use isolith::field::copies::{Copy, FlatInstancer, Placement, copy_of_cell, copy_of_place, world_from_copy};
 use isolith::field::eval::field;
 use isolith::field::{Component, FlatScene};
 use isolith::geometry::{Camera, Ray};
+use isolith::jobs::Task;
 use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{Instancer, Lattice, Scene, Variation};
-use isolith::session::SceneSession;
+use isolith::session::PreparedScene;
 use isolith::wgsl::Options;
 
 use crate::copies::scene_of;
@@ -220,24 +220,24 @@ fn playback_size() -> (u32, [u32; 2]) {
 fn playback_of_the_terrain_builds_no_pipeline() {
     let scene: Scene = isolith::gallery::all().into_iter().find(|(name, _)| *name == "terrain").expect("shipped").1;
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let prepared = BenchScene::new("terrain", &scene, Some(folder));
-    let mut document = Document::new(scene);
-    let mut session = SceneSession::default();
-    session.follow(&document);
+    let task = Task::new("Preparing");
+    let prepared = PreparedScene::of(&scene, 0.0, Some(folder), &task).expect("within the limits");
+    let mut prepared = prepared.expect("nobody cancels");
+    let camera = prepared.flat.default_camera(&[], 16.0 / 9.0);
     let (count, size) = playback_size();
     let mut shared = shared();
     shared.renderer.set_strategy(EvalStrategy::Auto);
     let mut built = None;
     let mut all: Vec<[f64; 3]> = Vec::new();
     for frame in 0..count {
-        document.set_time(f64::from(frame) / 24.0);
         let mut times = [0.0; 3];
         let start = Instant::now();
-        session.follow(&document);
+        let time = f64::from(frame) / 24.0;
+        assert!(prepared.advance(&scene, time, &task).expect("within the limits"), "nobody cancels");
         times[0] = start.elapsed().as_secs_f64();
-        let (flat, renderer) = (session.flat().clone(), &mut shared.renderer);
+        let (flat, renderer) = (prepared.flat.clone(), &mut shared.renderer);
         let overlay = OverlaySettings::default();
-        let begun = renderer.begin(Slot::Full, &flat, &vec![None; flat.meshes.len()], &prepared.camera, size, overlay);
+        let begun = renderer.begin(Slot::Full, &flat, &vec![None; flat.meshes.len()], &camera, size, overlay);
         let mut drawn = begun.expect("a frame");
         times[1] = start.elapsed().as_secs_f64() - times[0];
         renderer.advance(&mut drawn, Duration::MAX).expect("a picture");
