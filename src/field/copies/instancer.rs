@@ -100,7 +100,7 @@ pub struct Place {
     pub up: f64,
 }
 
-/// A mask. The GPU reads the parameters as they are, see `shaders/copy/mask.wgsl`.
+/// A mask. The GPU reads the parameters as they are, see `shaders/copy/masks.wgsl`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatMask {
     /// Its kind.
