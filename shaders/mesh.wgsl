@@ -5,57 +5,10 @@
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/mesh_look.wgsl"
+#include "common/mesh_place.wgsl"
 #include "common/coverage.wgsl"
 #include "common/tangent.wgsl"
 
-struct Instance {
-    // Rows of the matrix from the mesh's space to world space, relative to the eye or to the point
-    // that `ray_origin_depth` gives.
-    eye_from_local_x: vec4f,
-    eye_from_local_y: vec4f,
-    eye_from_local_z: vec4f,
-    // Rows of the matrix for normals.
-    normal_x: vec4f,
-    normal_y: vec4f,
-    normal_z: vec4f,
-    // Factor of the vertex colors and of their opacity.
-    color: vec4f,
-    // Rows of the matrix from the vertices' texture coordinates to those of the texture. The last
-    // number of the first row is 1 if it takes the second coordinates of a vertex.
-    texture_x: vec4f,
-    texture_y: vec4f,
-    base_color: vec3f,
-    visibility: u32,
-    // 1: `base_color` replaces the mesh's own colors. Their cutouts remain.
-    overridden: u32,
-    // 1: the transform mirrors the mesh, which reverses the order of a triangle's corners.
-    mirrored: u32,
-    // Fragments with less opacity are discarded.
-    alpha_cutoff: f32,
-    // Positions are relative to the point at this depth before the eye on the view axis; see
-    // `common/ray.wgsl`.
-    ray_origin_depth: f32,
-    // Factors of the textures.
-    emission: vec3f,
-    // Index of the material that holds what no texture changes.
-    material: u32,
-    metalness: f32,
-    roughness: f32,
-    // Of the first two coordinates of the normals of a texture; 0 without one.
-    normal_scale: f32,
-    occlusion_strength: f32,
-    // 1: emits its base color, and reflects nothing.
-    unlit: u32,
-    // 1: covers samples by its opacity.
-    blended: u32,
-    padding_1: u32,
-    padding_2: u32,
-    // Pairs of rows as `texture_x` and `texture_y`, for metalness and roughness, normals, occlusion,
-    // emission.
-    map_rows: array<vec4f, 8>,
-}
-
-@group(1) @binding(0) var<uniform> instance: Instance;
 @group(2) @binding(0) var base_color: texture_2d<f32>;
 @group(2) @binding(1) var base_sampler: sampler;
 @group(2) @binding(2) var metal_rough_map: texture_2d<f32>;
@@ -118,15 +71,26 @@ fn mesh_vertex(vertex: Vertex, @builtin(vertex_index) index: u32) -> Varying {
     return mesh_placed(vertex, index);
 }
 
+@vertex
+fn mesh_copy_vertex(vertex: Vertex, copy: MeshCopy, @builtin(vertex_index) index: u32) -> Varying {
+    return mesh_copy_placed(vertex, copy, index);
+}
+
 fn mesh_placed(vertex: Vertex, index: u32) -> Varying {
-    let p = vec4f(vertex.position, 1.0);
-    let position = vec3f(
-        dot(instance.eye_from_local_x, p),
-        dot(instance.eye_from_local_y, p),
-        dot(instance.eye_from_local_z, p),
-    );
+    let position = mesh_part_place(vec4f(vertex.position, 1.0));
     let n = vertex.normal;
     let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
+    return mesh_projected(vertex, position, normal, index);
+}
+
+fn mesh_copy_placed(vertex: Vertex, copy: MeshCopy, index: u32) -> Varying {
+    let position = mesh_copy_place(copy, vec4f(vertex.position, 1.0));
+    let n = vertex.normal;
+    let normal = vec3f(dot(copy.normal_x.xyz, n), dot(copy.normal_y.xyz, n), dot(copy.normal_z.xyz, n));
+    return mesh_projected(vertex, position, normal, index);
+}
+
+fn mesh_projected(vertex: Vertex, position: vec3f, normal: vec3f, index: u32) -> Varying {
     // `right` and `up` span half the picture at distance 1; their squares cancel these lengths.
     let depth = dot(position, view.forward) + instance.ray_origin_depth;
     let jitter = view.jitter / vec2f(f32(view.width), f32(view.height)) * (2.0 * depth);
@@ -144,17 +108,22 @@ fn mesh_placed(vertex: Vertex, index: u32) -> Varying {
 fn mesh_mapped_vertex(
     vertex: Vertex, @location(4) tangent: vec4f, @builtin(vertex_index) index: u32,
 ) -> MappedVarying {
-    let plain = mesh_placed(vertex, index);
-    let t = tangent.xyz;
-    let turned = vec3f(
-        dot(instance.eye_from_local_x.xyz, t),
-        dot(instance.eye_from_local_y.xyz, t),
-        dot(instance.eye_from_local_z.xyz, t),
-    );
+    return mesh_mapped(mesh_placed(vertex, index), vertex, mesh_part_place(vec4f(tangent.xyz, 0.0)), tangent);
+}
+
+@vertex
+fn mesh_mapped_copy_vertex(
+    vertex: Vertex, @location(4) tangent: vec4f, copy: MeshCopy, @builtin(vertex_index) index: u32,
+) -> MappedVarying {
+    let plain = mesh_copy_placed(vertex, copy, index);
+    return mesh_mapped(plain, vertex, mesh_copy_place(copy, vec4f(tangent.xyz, 0.0)), tangent);
+}
+
+fn mesh_mapped(plain: Varying, vertex: Vertex, turned: vec3f, tangent: vec4f) -> MappedVarying {
     let side = select(tangent.w, -tangent.w, instance.mirrored == 1u);
     return MappedVarying(
         plain.clip, plain.position, plain.normal, plain.color, plain.place, vertex.uv, vec4f(turned, side),
-        index,
+        plain.vertex,
     );
 }
 

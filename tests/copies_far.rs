@@ -13,7 +13,9 @@ use isolith::field::pick::{self, PickedCopy};
 use isolith::field::{RayLimits, flatten};
 use isolith::geometry::{Camera, Ray};
 use isolith::render::EvalStrategy;
-use isolith::scene::{DynamicKind, Instancer, Lattice, Mask, MaskSlot, Scene};
+use isolith::scene::{
+    Attachment, CurvePreset, DynamicKind, Instancer, Lattice, Mask, MaskJoin, MaskSlot, Scene, TextureImage,
+};
 
 use crate::copies::{scene_of, varied};
 use crate::gpu::{BenchScene, scenes};
@@ -38,7 +40,21 @@ fn masked() -> Vec<(&'static str, Scene)> {
         ("ring", of([0, 3, 0], ring, &[])),
         ("floors", of([0, 0, 0], vec![inverted(Mask::Height { from: -9.0, to: 30.0, softness: 3.0 })], &[])),
         ("hexagonal", scene_of(hexagonal, &[])),
+        ("joined", of([0, 1, 0], joined(), &[])),
     ]
+}
+
+/// Masks with curves and an image that leave much empty together, none of them alone.
+fn joined() -> Vec<MaskSlot> {
+    let image = Attachment::<TextureImage>::painted("disc.png", [16, 16], |x, y| {
+        let off = |v: u32| f64::from(v) - 7.5;
+        [if off(x).hypot(off(y)) < 7.0 { 255 } else { 0 }; 3]
+    });
+    let image = Mask::Image { image, width: 90.0, length: 70.0, offset: [20.0, 0.0, -30.0], tiled: false };
+    let noise = Mask::Noise { size: 60.0, threshold: 0.5, softness: 0.6, seed: 5 };
+    let steep = MaskSlot { join: MaskJoin::Add, curve: CurvePreset::Step.curve(), ..MaskSlot::from(noise) };
+    let hole = Mask::Radius { inner: 5.0, outer: 8.0 };
+    vec![image.into(), steep, MaskSlot { join: MaskJoin::Subtract, ..MaskSlot::from(hole) }]
 }
 
 /// Some numbers from 0 to 1 that fill the interval evenly.

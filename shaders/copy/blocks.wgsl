@@ -6,43 +6,14 @@
 const BLOCK_SLABS: i32 = 16;
 const BLOCK_LEAST: i32 = 4;
 const BLOCK_MOST: i32 = 4096;
-// Upper bound of the slope of noise along an axis, per lattice point.
-const BLOCK_NOISE_SLOPE: f32 = 1.875;
-// Rounding of a share, and of places in relation to their coordinates.
-const BLOCK_ROUNDING: f32 = 1e-3;
+// Rounding of places, in relation to their coordinates.
 const BLOCK_SLACK: f32 = 1e-5;
-
-// The least and the most that the share of a mask may be in a box.
-fn copy_mask_range(mask: CopyMask, center: vec3f, half: vec3f) -> vec2f {
-    var range = vec2f(0.0, 1.0);
-    if mask.kind == MASK_NOISE {
-        let s = noise_moved(NoiseCoordinate(mask.whole.x, mask.fraction.x), center.x * mask.params.z);
-        let t = noise_moved(NoiseCoordinate(mask.whole.y, mask.fraction.y), center.z * mask.params.z);
-        let off = BLOCK_NOISE_SLOPE * mask.params.z * (half.x + half.z);
-        let noise = copy_noise_2(mask.key, s, t) + vec2f(-off, off);
-        range = (noise - mask.params.x) / mask.params.y + 0.5;
-    } else if mask.kind == MASK_HEIGHT {
-        let y = center.y + instancer.anchor_place.y + vec2f(-half.y, half.y);
-        let above = clamp((y - mask.params.x) / mask.params.z, vec2f(0.0), vec2f(1.0));
-        range = above * clamp((mask.params.y - y.yx) / mask.params.z, vec2f(0.0), vec2f(1.0));
-    } else if mask.kind != MASK_SLOPE {
-        let away = abs(center.xz + instancer.anchor_place.xz);
-        let distance = vec2f(length(away + half.xz), length(max(away - half.xz, vec2f(0.0))));
-        range = (mask.params.y - distance) / (mask.params.y - mask.params.x);
-    }
-    range = clamp(range + vec2f(-BLOCK_ROUNDING, BLOCK_ROUNDING), vec2f(0.0), vec2f(1.0));
-    return select(range, 1.0 - range.yx, mask.inverted == 1u);
-}
 
 // Whether masks let no copy stand in a box of places, relative to the anchor's place.
 fn copy_block_is_empty(low: vec3f, high: vec3f, masks: u32) -> bool {
     let center = 0.5 * (low + high);
     let half = 0.5 * (high - low) + BLOCK_SLACK * (abs(center + instancer.anchor_place) + 1.0);
-    var is_empty = false;
-    for (var i = 0u; i < masks; i += 1u) {
-        is_empty = copy_mask_range(instancer.masks[i], center, half).y <= BLOCK_ROUNDING || is_empty;
-    }
-    return is_empty;
+    return copy_masks_most(center, half, masks) <= 0.0;
 }
 
 // Passes the next slabs if they are empty before `far`; else tries fewer, or later.

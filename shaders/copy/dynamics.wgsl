@@ -26,6 +26,10 @@ const DYNAMIC_RANDOM_WALK: u32 = 8u;
 const DYNAMIC_BROWNIAN: u32 = 9u;
 const DYNAMIC_CURL: u32 = 10u;
 
+// Wind is still over this part of a gust around the source that it blows away from.
+const DYNAMIC_CALM: f32 = 0.1;
+// Values of noise over which gusts differ around a source.
+const DYNAMIC_SECTORS: f32 = 3.0;
 const DYNAMIC_CURL_SCALE: f32 = 0.4;
 const DYNAMIC_TURN: f32 = 6.2831853;
 
@@ -71,16 +75,24 @@ fn dynamic_coordinate(dynamic: CopyDynamic, axis: u32, row: vec4f, position: vec
 
 // A tilt with the wind about the copy's root, and a quiver.
 fn dynamic_wind(dynamic: CopyDynamic, randoms: vec3f, position: vec3f) -> vec4f {
-    let along = vec3f(dynamic.a.x, 0.0, dynamic.a.z);
+    let radial = dynamic.row_x.w;
+    let core = dynamic.row_y.w;
+    let gusts = dynamic.row_z.w;
+    let off = position - dynamic.row_z.xyz;
+    let way = length(off.xz);
+    let outward = vec3f(off.x, 0.0, off.z) / length(vec2f(way, DYNAMIC_CALM / gusts));
+    let along = vec3f(dynamic.a.x, 0.0, dynamic.a.z) * (1.0 - radial) + outward * radial;
     let across = vec3f(-along.z, 0.0, along.x);
-    let s = dynamic_coordinate(dynamic, 0u, dynamic.row_x, position);
-    let t = dynamic_coordinate(dynamic, 1u, dynamic.row_y, position);
+    let straight = dynamic_coordinate(dynamic, 0u, dynamic.row_x, position);
+    let beside = dynamic_coordinate(dynamic, 1u, dynamic.row_y, position);
+    let s = noise_moved(straight, radial * way * gusts);
+    let t = noise_moved(beside, radial * DYNAMIC_SECTORS * outward.x);
     // From 0 to 1: a gust never turns the wind around.
     let gust = copy_noise_2(dynamic.key, s, t);
     var strength = dynamic.b.x + (1.0 - dynamic.b.x) * gust;
     if dynamic.b.w > 0.0 {
-        let way = (position + instancer.anchor_place) / dynamic.b.w;
-        let near = max(1.0 - dot(way, way), 0.0);
+        let beyond = max(length(off) / dynamic.b.w - core, 0.0) / (1.0 - core);
+        let near = max(1.0 - beyond * beyond, 0.0);
         strength *= near * near;
     }
     strength *= 1.0 - (1.0 - dynamic.b.y) * randoms.y;

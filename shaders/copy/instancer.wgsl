@@ -9,11 +9,15 @@ struct CopyMask {
     kind: u32,
     inverted: u32,
     key: u32,
-    padding: u32,
+    join: u32,
     params: vec4f,
-    // Noise coordinates of the anchor's place.
+    // Noise coordinates of the anchor's place. Of an image: its first row among `places` and how it
+    // lies; the anchor's place in pixels.
     whole: vec2i,
     fraction: vec2f,
+    // Greatest slope of the curve, -1 without one; it is 0 up to the second number and from the
+    // third one on; its first row among `places`.
+    curve: vec4f,
 }
 
 struct CopyDynamic {
@@ -29,6 +33,8 @@ struct CopyDynamic {
     channel: u32,
     place: vec3f,
     padding: u32,
+    // Wind: the third one is its source, relative to the anchor's place. The last numbers are how far
+    // it blows outward, the share of the radius without falloff, and gusts per meter.
     row_x: vec4f,
     row_y: vec4f,
     row_z: vec4f,
@@ -100,7 +106,8 @@ struct Instancer {
 
 // Beside it `places`, the lists of places. Per instancer: a tree of boxes, two rows per node, lower
 // and upper corner, with the link and the axis as bits in w; then three rows per place: position
-// with the cosine of the slope of the ground, rotation, id with the type.
+// with the cosine of the slope of the ground, rotation, id with the type. Per lattice: images and curves of
+// its masks, four pixels or samples per row.
 #include "generated/instancer.wgsl"
 
 // A number of the instancer that ends a loop or decides. lavapipe compiles a pipeline anew for each

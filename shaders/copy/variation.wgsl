@@ -1,6 +1,7 @@
 // What sets a copy apart. Counterpart of `src/field/copies/variation.rs`.
 
 #include "copy/dynamics.wgsl"
+#include "copy/masks.wgsl"
 
 struct Copy {
     // Absolute cell, or the id of the place.
@@ -34,40 +35,11 @@ const CHANNEL_SCALE: u32 = 4u;
 const CHANNEL_COLOR: u32 = 5u;
 const CHANNEL_SURFACE: u32 = 6u;
 
-// In the order of `MaskKind`.
-const MASK_NOISE: u32 = 0u;
-const MASK_HEIGHT: u32 = 1u;
-const MASK_SLOPE: u32 = 2u;
-
-// The share of a mask at a position, from 0 to 1. There is no ground, so nothing is steep.
-fn copy_mask(mask: CopyMask, position: vec3f) -> f32 {
-    var share = 1.0;
-    if mask.kind == MASK_NOISE {
-        let s = noise_moved(NoiseCoordinate(mask.whole.x, mask.fraction.x), position.x * mask.params.z);
-        let t = noise_moved(NoiseCoordinate(mask.whole.y, mask.fraction.y), position.z * mask.params.z);
-        share = (copy_noise_2(mask.key, s, t) - mask.params.x) / mask.params.y + 0.5;
-    } else {
-        let at = position + instancer.anchor_place;
-        if mask.kind == MASK_HEIGHT {
-            share = min((at.y - mask.params.x) / mask.params.z, 1.0);
-            share = max(share, 0.0) * clamp((mask.params.y - at.y) / mask.params.z, 0.0, 1.0);
-        } else if mask.kind != MASK_SLOPE {
-            share = (mask.params.y - length(at.xz)) / (mask.params.y - mask.params.x);
-        }
-    }
-    share = clamp(share, 0.0, 1.0);
-    return select(share, 1.0 - share, mask.inverted == 1u);
-}
-
 // The type of the copy of an absolute cell that stands at `base`; COPY_ABSENT if there is none. Also the
 // numbers of the instancer, of its masks and of its types.
 fn copy_kind(cell: vec3i, base: vec3f, seed: u32, probability: f32, masks: u32, types: u32) -> u32 {
     let randoms = copy_randoms(seed, cell, CHANNEL_CHOICE);
-    var share = probability;
-    for (var i = 0u; i < masks; i += 1u) {
-        share *= copy_mask(instancer.masks[i], base);
-    }
-    if randoms.x >= share {
+    if randoms.x >= probability * copy_masks(base, masks) {
         return COPY_ABSENT;
     }
     var kind = 0u;

@@ -93,7 +93,7 @@ pub fn insert(session: &mut EditSession, from: &Arc<Scene>) {
     let scene = session.document.scene();
     let active = session.document.selection().last().and_then(|id| scene.node(*id));
     let holds_types = |id: NodeId| scene.node(id).is_some_and(|parent| super::instancing::instancer(parent).is_some());
-    let fits = |id: &NodeId| !holds_types(*id) || from.children(None).all(|node| node.has_field());
+    let fits = |id: &NodeId| !holds_types(*id) || from.children(None).all(|node| node.can_be_type());
     let (parent, position) = match active {
         Some(node) if node.parent.is_none_or(|id| fits(&id)) => (node.parent, selection::place(scene, node.id) + 1),
         _ => (None, scene.children(None).count()),

@@ -54,7 +54,7 @@ pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> 
 fn place(scene: &Scene, selection: &[NodeId], new: &Node) -> (Option<NodeId>, usize) {
     match selection.last().and_then(|id| scene.node(*id)) {
         None => (None, scene.children(None).count()),
-        Some(n) if n.has_children() && (new.has_field() || instancing::instancer(n).is_none()) => {
+        Some(n) if n.has_children() && (new.can_be_type() || instancing::instancer(n).is_none()) => {
             (Some(n.id), scene.children(Some(n.id)).count())
         }
         Some(n) => (n.parent, selection::place(scene, n.id) + 1),

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::multi_edit::MultiEdit;
 use super::slot_list::{self, SlotList};
-use super::widgets;
+use super::{curve_editor, widgets};
 use isolith_scene::{
     DynamicKind, DynamicSlot, MAX_DYNAMICS, MAX_MASKS, MAX_MODIFIERS, MaskKind, MaskSlot, ModifierKind, ModifierSlot,
     Node, NodeKind, Param, Part,
@@ -105,7 +105,7 @@ impl SlotList for MaskSlot {
     const MOST: usize = MAX_MASKS;
     const NAMES: [&'static str; 2] = ["mask", "masks"];
     const SWITCH: Option<&'static str> = None;
-    const ROWS: &'static [&'static str] = &["inverted"];
+    const ROWS: &'static [&'static str] = &["inverted", "join"];
 
     fn kinds() -> &'static [MaskKind] {
         MaskKind::ALL
@@ -137,5 +137,9 @@ impl SlotList for MaskSlot {
 
     fn part(index: usize) -> Part {
         Part::Mask(index)
+    }
+
+    fn more(ui: &mut Ui, edit: &mut MultiEdit<'_>, index: usize) {
+        curve_editor::show(ui, edit, index);
     }
 }

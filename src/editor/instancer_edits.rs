@@ -24,7 +24,7 @@ pub fn add(state: &mut EditorState) {
 /// Whether the selection can become the types of an instancer.
 pub fn can_instance(session: &EditSession) -> bool {
     let selected = session.selected();
-    !selected.is_empty() && selected.iter().all(|node| node.has_field())
+    !selected.is_empty() && selected.iter().all(|node| node.can_be_type())
 }
 
 /// Makes the selection the types of a new instancer, which stands where the first of them stands, and selects it.
@@ -71,7 +71,7 @@ pub fn apply_preset(state: &mut EditorState, preset: InstancerPreset) {
 
 /// The mean width of the types of an instancer in its own space; a meter where there are none.
 fn width_of_types(scene: &Scene, meshes: &MeshLibrary, id: NodeId) -> f64 {
-    let types = scene.children(Some(id)).filter(|node| node.has_field());
+    let types = scene.children(Some(id)).filter(|node| node.can_be_type());
     let widths: Vec<f64> = types
         .filter_map(|node| {
             let (_, bounds) = bounds::oriented(scene, meshes, node.id)?;

@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use super::numbers::number_text;
 use isolith_field::FlatScene;
-use isolith_field::copies::Placement;
-use isolith_geometry::Aabb;
+use isolith_field::copies::{COUNT_LIMITS, CopiesInView, Placement, copies_in_view};
+use isolith_geometry::{Aabb, Camera};
 use isolith_scene::{Instancer, Lattice, Node, NodeId, NodeKind, Scene, Shape, Snap};
 
 /// The instancer of a node.
@@ -23,7 +23,7 @@ pub fn instancer_mut(node: &mut Node) -> Option<&mut Instancer> {
 
 /// The share of copies of each type of an instancer, from 0 to 1, in order; all 0 if their weights are.
 pub fn shares(scene: &Scene, id: NodeId) -> Vec<(NodeId, f64)> {
-    let is_chosen = |node: &Node| node.visible && node.has_field();
+    let is_chosen = |node: &Node| node.visible && node.can_be_type();
     let weight = |node: &Node| if is_chosen(node) { node.weight } else { 0.0 };
     let weights: Vec<_> = scene.children(Some(id)).map(|node| (node.id, weight(node))).collect();
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
@@ -133,6 +133,18 @@ pub fn extent(lattice: &Lattice) -> Aabb {
 pub fn listed_text(flat: &FlatScene, id: NodeId) -> Option<String> {
     let made = flat.instancers.iter().find(|made| made.id == id)?;
     if let Placement::List(list) = &made.placement { Some(copies(list.places.len() as f64)) } else { None }
+}
+
+/// How many of an instancer's copies are in view; `None` for one that makes none.
+pub fn in_view_text(flat: &FlatScene, id: NodeId, camera: &Camera, aspect: f64) -> Option<String> {
+    let made = flat.instancers.iter().find(|made| made.id == id)?;
+    // Bounds of meshes are not known here: the middle of a copy counts.
+    let CopiesInView { all, cut } = copies_in_view(made, 0.0, camera, aspect, COUNT_LIMITS);
+    let count = number_text(all.len() as f64);
+    Some(match cut {
+        Some(depth) => format!("over {count} in view, as far as {} m", number_text(depth.round())),
+        None => format!("{count} in view"),
+    })
 }
 
 fn copies(count: f64) -> String {

@@ -65,6 +65,7 @@ mod color_picker;
 mod command_palette;
 mod commands;
 mod conflict;
+mod curve_editor;
 mod dialog_views;
 mod dialogs;
 mod dock;

@@ -22,7 +22,7 @@ pub fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<Node
     let parent = drag.target;
     let ids: Vec<NodeId> = drag.source.iter().copied().flatten().collect();
     let into_itself = |p| ids.iter().any(|id| scene.is_within(p, *id));
-    let is_type = |id: &NodeId| scene.node(*id).is_some_and(|node| node.has_field());
+    let is_type = |id: &NodeId| scene.node(*id).is_some_and(|node| node.can_be_type());
     let takes_types = parent.and_then(|p| scene.node(p)).is_some_and(|node| instancing::instancer(node).is_some());
     if ids.is_empty() || parent.is_some_and(into_itself) || (takes_types && !ids.iter().all(is_type)) {
         return None;

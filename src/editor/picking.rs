@@ -97,7 +97,7 @@ pub fn pick_surface_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Opti
 
 fn surface(state: &EditorState, flat: &FlatScene, ray: &Ray, limits: RayLimits) -> Option<PickedPoint> {
     let meshes = flat.known_meshes(state.derived.library());
-    let mesh = trace_meshes(flat, &meshes, ray, limits.near, limits.far).map(|(_, hit)| hit);
+    let mesh = trace_meshes(flat, &meshes, ray, limits.near, limits.far).map(|found| found.hit);
     let limits = RayLimits { far: mesh.as_ref().map_or(limits.far, |hit| hit.t), ..limits };
     let mut evaluator = SceneEvaluator::new(flat).of_eye(ray.origin);
     let Some(hit) = evaluator.ray(ray, limits).ok().flatten() else {

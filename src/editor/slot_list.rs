@@ -47,6 +47,9 @@ pub trait SlotList: Sized {
 
     /// The part of the node that is the entry at this index.
     fn part(index: usize) -> Part;
+
+    /// Shows what the entry at this index has besides its parameters.
+    fn more(_: &mut Ui, _: &mut MultiEdit<'_>, _: usize) {}
 }
 
 /// Shows the list.
@@ -64,6 +67,7 @@ pub fn show<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
                         for row in S::ROWS.iter().copied().chain(S::params(*kind).iter().map(|param| param.name)) {
                             inspector_params::row(ui, edit, S::part(index), row);
                         }
+                        S::more(ui, edit, index);
                     });
                     ui.add_space(4.0);
                 }

@@ -11,6 +11,7 @@ use super::state::EditorState;
 use super::transforms::kinds::{Tool, TransformKind};
 use super::view_state::{Picture, PointerActivity};
 use super::{instancing, theme};
+use isolith_geometry::Camera;
 use isolith_jobs::Task;
 use isolith_scene::NodeId;
 
@@ -116,6 +117,29 @@ fn counts(state: &EditorState, ui: &mut Ui) {
         ui.label(RichText::new("·").color(theme::RESTING));
         ui.label(RichText::new(text).color(theme::WEAK));
     }
+    if let Some(text) = active.and_then(|node| in_view(state, ui, node.id)) {
+        ui.label(RichText::new("·").color(theme::RESTING));
+        ui.label(RichText::new(text).color(theme::WEAK));
+    }
+}
+
+/// What the number of copies in view was counted for, and what it says.
+type CountedView = (usize, NodeId, Camera, f64, Option<String>);
+
+/// How many copies of an instancer are in view; counted again where the scene or the view has changed.
+fn in_view(state: &EditorState, ui: &Ui, id: NodeId) -> Option<String> {
+    let (camera, aspect) = (state.view.navigation.camera(), state.view.aspect());
+    let scene = std::sync::Arc::as_ptr(state.flat()) as usize;
+    let key = Id::unique("copies in view");
+    let known = ui.data(|d| d.get_temp::<CountedView>(key));
+    if let Some((of, node, from, wide, text)) = known
+        && (of, node, from, wide) == (scene, id, camera, aspect)
+    {
+        return text;
+    }
+    let text = instancing::in_view_text(state.flat(), id, &camera, aspect);
+    ui.data_mut(|d| d.insert_temp::<CountedView>(key, (scene, id, camera, aspect, text.clone())));
+    text
 }
 
 /// What the bricks of models take, and may take; `None` without any.

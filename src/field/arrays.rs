@@ -238,6 +238,8 @@ pub struct FlatMesh {
     pub world_from_local: DAffine3,
     /// Index into [`FlatScene::materials`] instead of the file's own materials.
     pub material: Option<u32>,
+    /// Set for a type of an instancer: `world_from_local` then leads to the space of a copy.
+    pub instanced: Option<InstanceType>,
 }
 
 /// A camera with its place in the world.
@@ -298,7 +300,7 @@ pub struct Component {
     pub instanced: Option<InstanceType>,
 }
 
-/// Which copies a component is the type of.
+/// Which copies a component, or a mesh, is the type of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstanceType {
     /// Index into [`FlatScene::instancers`].

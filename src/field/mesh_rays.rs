@@ -2,18 +2,32 @@
 
 use std::sync::Arc;
 
+use super::copies::{Copy, mesh_copies_along};
 use super::coverage::{PixelSample, coverage_layer, coverage_threshold};
+use super::ray_limits::RayLimits;
 use super::{FlatScene, MESH_BIT};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use isolith_geometry::Ray;
 use isolith_mesh::{MeshHit, TriangleMesh};
 
 /// The meshes of a scene, parallel to [`FlatScene::meshes`]; `None` where a file could not be read.
 pub type Meshes = [Option<Arc<TriangleMesh>>];
 
-/// The first triangle on the ray between `near` and `far`: the index of its mesh, and the hit with `t` along the ray
-/// in meters and everything else in the mesh's own space. Blended surfaces count where they have any opacity.
-pub fn trace_meshes(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<(usize, MeshHit)> {
+/// A triangle that a ray meets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshRayHit {
+    /// The index of its mesh.
+    pub index: usize,
+    /// The hit, with `t` along the ray in meters and everything else in the mesh's own space.
+    pub hit: MeshHit,
+    /// World from that space.
+    pub world_from_local: DAffine3,
+    /// The copy of an instancer that it is part of.
+    pub copy: Option<Copy>,
+}
+
+/// The first triangle on the ray between `near` and `far`. Blended surfaces count where they have any opacity.
+pub fn trace_meshes(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<MeshRayHit> {
     trace_covering(flat, meshes, ray, [near, far], |_, opacity| opacity > 0.0)
 }
 
@@ -24,14 +38,15 @@ pub fn trace_meshes_of_pixel(
     ray: &Ray,
     range: [f64; 2],
     at: PixelSample,
-) -> Option<(usize, MeshHit)> {
+) -> Option<MeshRayHit> {
     trace_covering(flat, meshes, ray, range, |layer, opacity| opacity > coverage_threshold(at, layer))
 }
 
-/// The first triangle that stops light between `near` and `far`, as [`TriangleMesh::hit_solid`] has it. Counterpart of
-/// the function of this name in `shaders/scene/mesh_rays.wgsl`.
+/// The first triangle that stops light between `near` and `far`, as [`TriangleMesh::hit_solid`] has it: copies stop none.
+/// Counterpart of the function of this name in `shaders/scene/mesh_rays.wgsl`.
 pub fn mesh_rays_hit(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<(usize, MeshHit)> {
-    nearest(flat, meshes, ray, [near, far], |_, mesh, local, limit| mesh.hit_solid(local, limit))
+    let hit = |_, mesh: &TriangleMesh, local: &Ray, limit| mesh.hit_solid(local, limit);
+    nearest(flat, meshes, ray, [near, far], false, hit).map(|found| (found.index, found.hit))
 }
 
 /// Whether a triangle stops light between `near` and `far`.
@@ -45,7 +60,7 @@ pub fn mesh_rays_distance(flat: &FlatScene, meshes: &Meshes, p: DVec3, within: f
     let of_mesh = |best: f64, (placed, mesh): (&crate::FlatMesh, &Option<Arc<TriangleMesh>>)| {
         let local_from_world = placed.world_from_local.inverse();
         match mesh {
-            Some(mesh) if local_from_world.is_finite() => {
+            Some(mesh) if local_from_world.is_finite() && placed.instanced.is_none() => {
                 mesh.distance_to_solid(local_from_world.transform_point3(p), &placed.world_from_local.matrix3, best)
             }
             _ => best,
@@ -60,33 +75,46 @@ fn trace_covering(
     ray: &Ray,
     range: [f64; 2],
     covers: impl Fn(u32, f64) -> bool,
-) -> Option<(usize, MeshHit)> {
-    nearest(flat, meshes, ray, range, |index, mesh, local, limit| {
+) -> Option<MeshRayHit> {
+    nearest(flat, meshes, ray, range, true, |index, mesh, local, limit| {
         let code = MESH_BIT | index as u32;
         mesh.hit_covering(local, limit, |vertex, opacity| covers(coverage_layer(code, vertex), opacity))
     })
 }
 
-/// The nearest of the hits in all meshes; `hit` gives that of a mesh for a ray in its own space.
+/// The nearest of the hits in all meshes, and in their copies if `with_copies`; `hit` gives that of a mesh for a ray in
+/// its own space.
 fn nearest(
     flat: &FlatScene,
     meshes: &Meshes,
     ray: &Ray,
     [near, far]: [f64; 2],
+    with_copies: bool,
     hit: impl Fn(usize, &TriangleMesh, &Ray, f64) -> Option<MeshHit>,
-) -> Option<(usize, MeshHit)> {
-    let mut nearest: Option<(usize, MeshHit)> = None;
-    for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
-        let Some(mesh) = mesh else { continue };
-        let local_from_world = placed.world_from_local.inverse();
+) -> Option<MeshRayHit> {
+    let mut nearest: Option<MeshRayHit> = None;
+    let mut look = |index: usize, mesh: &TriangleMesh, world_from_local: DAffine3, copy: Option<Copy>| {
+        let local_from_world = world_from_local.inverse();
         let local = Ray {
             origin: local_from_world.transform_point3(ray.at(near)),
             direction: local_from_world.transform_vector3(ray.direction),
         };
-        let limit = nearest.map_or(far, |(_, hit)| hit.t) - near;
+        let limit = nearest.as_ref().map_or(far, |found| found.hit.t) - near;
         if let Some(mut hit) = hit(index, mesh, &local, limit) {
             hit.t += near;
-            nearest = Some((index, hit));
+            nearest = Some(MeshRayHit { index, hit, world_from_local, copy });
+        }
+        nearest.as_ref().map_or(far, |found| found.hit.t)
+    };
+    for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
+        let Some(mesh) = mesh else { continue };
+        if placed.instanced.is_none() {
+            look(index, mesh, placed.world_from_local, None);
+        } else if with_copies {
+            let limits = RayLimits { near, far };
+            mesh_copies_along(flat, placed, &mesh.bounds, ray, limits, &mut |copy| {
+                look(index, mesh, copy.world_from_mesh, Some(copy.copy))
+            });
         }
     }
     nearest

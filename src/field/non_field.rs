@@ -35,7 +35,9 @@ pub(super) fn update(flat: &mut FlatScene, scene: &Scene, time: f64) {
         if let Some((node, world)) = placed(scene, place.id)
             && let NodeKind::Mesh(mesh) = &node.kind
         {
-            *place = place_mesh(node.id, mesh, &world, place.material, time);
+            let instanced = place.instanced;
+            let world = if instanced.is_some() { node.transform.to_affine() } else { world };
+            *place = FlatMesh { instanced, ..place_mesh(node.id, mesh, &world, place.material, time) };
         }
     }
     for place in &mut flat.cameras {
@@ -70,8 +72,15 @@ fn place_light(id: NodeId, light: &Light, world_from_local: &DAffine3) -> FlatLi
     }
 }
 
-fn place_mesh(id: NodeId, mesh: &MeshNode, world_from_local: &DAffine3, material: Option<u32>, time: f64) -> FlatMesh {
-    FlatMesh { id, model: model_pose(mesh, time), world_from_local: *world_from_local, material }
+/// A mesh in its place.
+pub(super) fn place_mesh(
+    id: NodeId,
+    mesh: &MeshNode,
+    world_from_local: &DAffine3,
+    material: Option<u32>,
+    time: f64,
+) -> FlatMesh {
+    FlatMesh { id, model: model_pose(mesh, time), world_from_local: *world_from_local, material, instanced: None }
 }
 
 fn place_camera(node: &Node, camera: &CameraNode, world_from_local: &DAffine3) -> FlatCamera {

@@ -33,12 +33,17 @@ pub fn pick(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -
 /// The same with the copy that it is part of.
 pub fn pick_copy(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<Picked> {
     let mesh = trace_meshes(flat, meshes, ray, near, far);
-    let limit = mesh.map_or(far, |(_, hit)| hit.t);
+    let limit = mesh.as_ref().map_or(far, |found| found.hit.t);
     // A ray that cannot be followed to its end counts as a miss of all fields.
     let Some(hit) =
         SceneEvaluator::new(flat).of_eye(ray.origin).ray(ray, RayLimits { near, far: limit }).ok().flatten()
     else {
-        return mesh.map(|(index, _)| Picked { node: flat.meshes[index].id, copy: None });
+        return mesh.map(|found| {
+            let placed = &flat.meshes[found.index];
+            let instancer = placed.instanced.map(|of| flat.instancers[of.instancer as usize].id);
+            let copy = instancer.zip(found.copy).map(|(instancer, copy)| PickedCopy { instancer, cell: copy.cell });
+            Picked { node: placed.id, copy }
+        });
     };
     let component = &flat.components[hit.component as usize];
     let copy = component.instanced.and_then(|of| {

@@ -1,8 +1,8 @@
 //! The types of instancers: each becomes a component in the space of a copy.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
-use super::arrays::{FlatScene, InstanceType, Warning};
+use super::arrays::{FlatMesh, FlatScene, InstanceType, Warning};
 use super::budget::Budget;
 use super::collect::type_of;
 use super::copies::build::{CopyType, flat_instancer, is_listed};
@@ -11,10 +11,14 @@ use super::copies::instancer::{MAX_PLACES, Place};
 use super::copies::list::{self, PlaceRefusal, curve_of};
 use super::error::FlattenError;
 use super::lower_bound::fold_bounds;
+use super::non_field::place_mesh;
 use super::operand::Operand;
 use super::survey::Survey;
 use isolith_geometry::Aabb;
-use isolith_scene::{Instancer, Lattice, MAX_TYPES, MaterialId, Node, NodeId, NodeKind, Operator, Scene, Snap};
+use isolith_scene::{
+    Instancer, Lattice, MAX_TYPES, Mask, MaterialId, MaterialVariation, MeshNode, Node, NodeId, NodeKind, Operator,
+    Scene, Snap,
+};
 
 /// See [`MAX_PLACES`].
 const PLACES: &str = "the number of copies that stand on a surface, along a curve or in rings";
@@ -61,8 +65,14 @@ pub(super) fn add_instancer<'a>(
         if !child_node.visible || child_node.weight == 0.0 {
             continue;
         }
+        if let NodeKind::Mesh(mesh) = &child_node.kind {
+            // Its bounds are known to those who read its file.
+            let bounds = Aabb::from_center_half(DVec3::ZERO, DVec3::ZERO);
+            types.push(TypeFold { weight: child_node.weight, bounds, content: TypeContent::Mesh(child_node, mesh) });
+            continue;
+        }
         if !child_node.has_field() {
-            warn(flat, child_node, "cannot be a type of an instancer: only objects and groups can");
+            warn(flat, child_node, "cannot be a type of an instancer: only objects, groups and meshes can");
             continue;
         }
         let (operands, warnings, left) = type_of(scene, survey, child, budget);
@@ -77,7 +87,7 @@ pub(super) fn add_instancer<'a>(
             warn(flat, child_node, "has no end, so that no copies of it can be made");
             continue;
         }
-        types.push((child_node.weight, bounds, operands));
+        types.push(TypeFold { weight: child_node.weight, bounds, content: TypeContent::Field(operands) });
     }
     if let Some(problem) = budget.problem.take() {
         return Err(problem);
@@ -98,8 +108,20 @@ pub(super) fn add_instancer<'a>(
     Ok(budget)
 }
 
-/// A type: its weight, its bounds and its fold, in the space of a copy.
-type TypeFold<'a> = (f64, Aabb, Vec<Operand<'a>>);
+/// A type in the space of a copy.
+struct TypeFold<'a> {
+    weight: f64,
+    bounds: Aabb,
+    content: TypeContent<'a>,
+}
+
+/// What a type is.
+enum TypeContent<'a> {
+    /// The fold of its field.
+    Field(Vec<Operand<'a>>),
+    /// Triangles of a model.
+    Mesh(&'a Node, &'a MeshNode),
+}
 
 /// Adds the instancer with a component for each type.
 fn add_types<'a>(
@@ -111,19 +133,31 @@ fn add_types<'a>(
     add: &mut AddComponent<'a, '_>,
 ) -> Result<(), FlattenError> {
     let NodeKind::Instancer(instancer) = &node.kind else { unreachable!("it is an instancer") };
-    let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
+    warn_of_images(flat, node, instancer);
+    warn_of_meshes(flat, of.scene, instancer, types);
+    let palette_of_copies = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
     let places = places(flat, of, (node, instancer), world_from_local)?;
     let sizes: Vec<CopyType> =
-        types.iter().map(|(weight, bounds, _)| CopyType { weight: *weight, bounds: *bounds }).collect();
-    let made = flat_instancer(node, instancer, world_from_local, of.time, &sizes, places, palette);
+        types.iter().map(|TypeFold { weight, bounds, .. }| CopyType { weight: *weight, bounds: *bounds }).collect();
+    let made = flat_instancer(node, instancer, world_from_local, of.time, &sizes, places, palette_of_copies);
     if made.bounds().is_empty() {
         return Ok(());
     }
     let (at, bounds) = (flat.instancers.len() as u32, made.world_bounds());
     flat.instancers.push(made);
-    for (kind, (_, _, operands)) in types.iter().enumerate() {
-        if let Some(component) = add(flat, operands)? {
-            flat.components[component].instanced = Some(InstanceType { instancer: at, kind: kind as u32, bounds });
+    for (kind, one) in types.iter().enumerate() {
+        let instanced = Some(InstanceType { instancer: at, kind: kind as u32, bounds });
+        match &one.content {
+            TypeContent::Field(operands) => {
+                if let Some(component) = add(flat, operands)? {
+                    flat.components[component].instanced = instanced;
+                }
+            }
+            TypeContent::Mesh(node, mesh) => {
+                let material = mesh.material.map(|id| palette(flat, id));
+                let made = place_mesh(node.id, mesh, &node.transform.to_affine(), material, of.time);
+                flat.meshes.push(FlatMesh { instanced, ..made });
+            }
         }
     }
     Ok(())
@@ -172,6 +206,32 @@ fn places(
 /// Whether its copies stand on a surface.
 fn needs_ground(instancer: &Instancer) -> bool {
     instancer.snap != Snap::Off || matches!(instancer.lattice, Lattice::Scatter { .. })
+}
+
+/// What copies of triangles cannot do.
+fn warn_of_meshes(flat: &mut FlatScene, scene: &Scene, instancer: &Instancer, types: &[TypeFold<'_>]) {
+    let is_varied = !instancer.palette.is_empty() || instancer.material != MaterialVariation::default();
+    let is_shadowed = scene.environment.shadowing.is_on();
+    let reason = match (is_varied, is_shadowed) {
+        (false, false) => return,
+        (true, false) => "the palette and the jitter of materials do not act",
+        (false, true) => "shadows and occlusion do not know them",
+        (true, true) => "shadows and occlusion do not know them, nor act the palette and the jitter of materials",
+    };
+    for one in types {
+        if let TypeContent::Mesh(node, _) = one.content {
+            warn(flat, node, &format!("is copied as triangles: {reason}; convert it to a field for that"));
+        }
+    }
+}
+
+/// Masks whose image is missing.
+fn warn_of_images(flat: &mut FlatScene, node: &Node, instancer: &Instancer) {
+    for (at, slot) in instancer.masks.iter().enumerate() {
+        if matches!(&slot.mask, Mask::Image { image, .. } if image.content().is_none()) {
+            warn(flat, node, &format!("has no image for its mask {}, which hides nothing until it has one", at + 1));
+        }
+    }
 }
 
 /// Copies join others by hard union only.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::FlatScene;
+use super::copies::mesh_copies_bounds;
 use super::mesh_rays::Meshes;
 use isolith_geometry::{Aabb, Camera};
 
@@ -31,7 +32,8 @@ impl FlatScene {
         }
         for (mesh, triangles) in self.meshes.iter().zip(meshes) {
             if let Some(triangles) = triangles {
-                all = all.union(&triangles.bounds.transformed(&mesh.world_from_local));
+                let bounds = mesh_copies_bounds(self, mesh, &triangles.bounds);
+                all = if bounds.is_finite() { all.union(&bounds) } else { all };
             }
         }
         if all.is_finite() { all } else { Aabb::from_center_half(DVec3::ZERO, DVec3::ONE) }

@@ -93,6 +93,9 @@ pub(super) fn terrain() -> Scene {
         flutter: 1.5,
         frequency: 0.9,
         radius: 0.0,
+        source: [0.0; 3],
+        core: 0.0,
+        radial: 0.0,
     };
     trees(&mut builder, hills, wind);
     grass(&mut builder, hills, wind);

@@ -293,7 +293,7 @@ impl Renderer {
         {
             self.resources.forget_groups();
         }
-        self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
+        self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size)?;
         let shadowed = self.resources.shadows.used.is_on();
         let sparse = shadowed && self.resources.shadows.used.spacing > 1;
         let tiled = self.resources.light_tiles().is_some();
@@ -309,6 +309,7 @@ impl Renderer {
         self.timings.begin();
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
         frame.template_rows = template_rows;
+        frame.of_meshes = self.passes.mesh.warnings(flat);
         frame.shade_features = features;
         frame.shadowed_lights = shadows.map_or([0, 0], |shadows| shadows.lights());
         if slot == Slot::Preview {
@@ -437,7 +438,7 @@ impl Renderer {
             Some(counts) => frame.warnings(counts),
             None => frame.warnings(&self.count_unfinished(frame)?),
         };
-        Ok([of_rays, frame.shadow_warnings(self.resources.shadows.left_out())].concat())
+        Ok([of_rays, frame.other_warnings(self.resources.shadows.left_out())].concat())
     }
 
     /// The picture in a slot: complete once its frame is done. [`Renderer::begin`] with another size replaces the

@@ -269,6 +269,11 @@ fn instancer(instancer: &Instancer) -> Result<(), Fault> {
     if let Some((name, count, most)) = lists.into_iter().find(|(_, count, most)| count > most) {
         return Err(Fault::new(name, format!("must be at most {most} of them, not {count}")));
     }
+    for (at, slot) in instancer.masks.iter().enumerate() {
+        if let Some(reason) = slot.curve.fault() {
+            return Err(Fault::new(format!("masks[{at}].curve"), reason));
+        }
+    }
     let variation = &instancer.variation;
     let ranges = [
         ("variation.offset_max", variation.offset_min, variation.offset_max),

@@ -42,8 +42,17 @@ param_kinds! {
         flutter: f64 = 2.0, TILT;
         /// How often it quivers.
         frequency: f64 = 1.5, FREQUENCY;
-        /// Distance from the origin within which a placed source acts; 0 is wind everywhere.
+        /// Distance from the source within which the wind blows; 0 is wind everywhere.
         radius: f64 = 0.0, SPACING_OR_NONE;
+        /// Where the source is placed.
+        #[serde(default)]
+        source: [f64; 3] = [0.0; 3], POSITION;
+        /// Share of the radius up to which the wind has its full strength; from there on it falls off to nothing.
+        #[serde(default)]
+        core: f64 = 0.0, CORE;
+        /// How far it blows away from the source instead of in its direction: 0 is along it, 1 outward on all sides.
+        #[serde(default)]
+        radial: f64 = 0.0, UNIT;
     }
     /// Swings about an axis through its origin.
     Sway = "Sway" {
@@ -149,6 +158,8 @@ param_kinds! {
 
 /// Tilts by wind.
 const TILT: Limits = Limits::new([0.0, 45.0], [0.0, 80.0], "°");
+/// Shares of a radius without falloff.
+const CORE: Limits = Limits::new([0.0, 0.95], [0.0, 0.95], "");
 /// Shares of the size by which something pulses.
 const PULSE: Limits = Limits::new([0.0, 0.5], [0.0, 0.99], "");
 /// Layers of noise over time.
@@ -180,7 +191,10 @@ impl From<Dynamic> for DynamicSlot {
     }
 }
 
-slot_params!(DynamicSlot, dynamic, enabled: true, "Whether it does anything.");
+slot_params!(DynamicSlot, dynamic, {
+    /// Whether it does anything.
+    enabled: bool = true;
+});
 
 fn yes() -> bool {
     true

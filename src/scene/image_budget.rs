@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::limits::MAX_SCENE_PIXELS;
-use super::{Attached, Environment, Material, Node, NodeKind, ParamValue, Params, SceneError, Shape};
+use super::{Attached, Environment, Mask, Material, Node, NodeKind, ParamValue, Params, SceneError, Shape};
 
 /// The images of a node.
 fn images(node: &Node) -> Vec<Attached> {
@@ -20,7 +20,12 @@ fn images(node: &Node) -> Vec<Attached> {
         ParamValue::File(image @ Attached::Heights(_)) => Some(image),
         _ => None,
     });
-    shape.into_iter().chain(of_modifiers).filter(|image| pixels(image) > 0).collect()
+    let masks = if let NodeKind::Instancer(instancer) = &node.kind { &instancer.masks[..] } else { &[] };
+    let of_masks = masks.iter().filter_map(|slot| match &slot.mask {
+        Mask::Image { image, .. } => Some(Attached::Texture(image.clone())),
+        _ => None,
+    });
+    shape.into_iter().chain(of_modifiers).chain(of_masks).filter(|image| pixels(image) > 0).collect()
 }
 
 /// The images of a material.

@@ -6,9 +6,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::attachment::Attachment;
 use super::limits::{ANGLE, COPIES, NO_LIMITS, POSITION, SEED, SPACING, UNIT};
 use super::node_id::NodeId;
 use super::params::{Variants, choices, nested_params, nested_variants, param_kinds, param_struct, slot_params};
+use super::response_curve::ResponseCurve;
+use super::texture_image::TextureImage;
 use super::{Limits, MaterialId};
 
 /// Most masks of one instancer.
@@ -123,8 +126,8 @@ impl Snap {
 choices!(Snap);
 
 param_kinds! {
-    /// A share from 0 to 1 for each place; masks multiply.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+    /// A share from 0 to 1 for each place.
+    #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
     pub enum Mask;
 
     /// The kind of a mask, without its parameters. The number is the code that the GPU reads.
@@ -166,6 +169,20 @@ param_kinds! {
         /// Empty from this distance on.
         outer: f64 = 10.0, DISTANCE;
     }
+    /// By an image that lies on the ground plane, its upper edge toward −Z: the brighter, the more.
+    Image = "Image" {
+        /// An image larger than 256 pixels is made smaller.
+        #[serde(default)]
+        image: Attachment<TextureImage> = Attachment::NONE, NO_LIMITS;
+        /// Of the image along X.
+        width: f64 = 20.0, SPACING;
+        /// Of the image along Z.
+        length: f64 = 20.0, SPACING;
+        /// Where its middle is; its height is ignored.
+        offset: [f64; 3] = [0.0; 3], POSITION;
+        /// Whether it repeats; else nothing stands beside it.
+        tiled: bool = false, NO_LIMITS;
+    }
 }
 
 impl MaskKind {
@@ -175,27 +192,98 @@ impl MaskKind {
     }
 }
 
+/// How a mask joins those before it. The number is the code that the GPU reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[repr(u32)]
+pub enum MaskJoin {
+    /// Their product.
+    #[default]
+    Multiply,
+    /// Their sum, at most 1.
+    Add,
+    /// Those before it less this one, at least 0.
+    Subtract,
+    /// The least of both.
+    Minimum,
+    /// The greatest of both.
+    Maximum,
+}
+
+impl MaskJoin {
+    const ALL: [Self; 5] = [Self::Multiply, Self::Add, Self::Subtract, Self::Minimum, Self::Maximum];
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Multiply => "Multiply",
+            Self::Add => "Add",
+            Self::Subtract => "Subtract",
+            Self::Minimum => "Minimum",
+            Self::Maximum => "Maximum",
+        }
+    }
+
+    fn help(self) -> &'static str {
+        match self {
+            Self::Multiply => "Copies stand where all masks let them.",
+            Self::Add => "Copies stand also where this mask lets them.",
+            Self::Subtract => "Copies are taken away where this mask is full.",
+            Self::Minimum => "The least of this mask and those before it counts.",
+            Self::Maximum => "The greatest of this mask and those before it counts.",
+        }
+    }
+
+    /// Of the share so far with that of the next mask.
+    pub fn joined(self, share: f64, next: f64) -> f64 {
+        match self {
+            Self::Multiply => share * next,
+            Self::Add => (share + next).min(1.0),
+            Self::Subtract => (share - next).max(0.0),
+            Self::Minimum => share.min(next),
+            Self::Maximum => share.max(next),
+        }
+    }
+
+    /// Whether nothing stands where this mask is empty.
+    pub fn only_cuts(self) -> bool {
+        matches!(self, Self::Multiply | Self::Minimum)
+    }
+}
+
+choices!(MaskJoin);
+
 /// A mask in an instancer's list.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaskSlot {
     /// Full where the mask is empty, and the other way round.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub inverted: bool,
+    /// How it joins the masks before it; the first one is the start.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub join: MaskJoin,
+    /// What becomes of its share, after it is inverted.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub curve: ResponseCurve,
     /// The mask.
     pub mask: Mask,
 }
 
-slot_params!(MaskSlot, mask, inverted: false, "Full where the mask is empty, and the other way round.");
+slot_params!(MaskSlot, mask, {
+    /// Full where the mask is empty, and the other way round.
+    inverted: bool = false;
+    /// How it joins the masks before it; the first one is the start.
+    join: MaskJoin = MaskJoin::Multiply;
+});
 
 impl From<Mask> for MaskSlot {
     fn from(mask: Mask) -> Self {
-        Self { inverted: false, mask }
+        Self { inverted: false, join: MaskJoin::default(), curve: ResponseCurve::default(), mask }
     }
 }
 
-fn is_false(value: &bool) -> bool {
-    !value
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 param_struct! {

@@ -53,6 +53,7 @@ mod packed;
 mod param_path;
 mod params;
 mod presets;
+mod response_curve;
 mod shadowing;
 mod shape;
 mod table;
@@ -75,8 +76,8 @@ pub use environment_image::EnvironmentImage;
 pub use error::SceneError;
 pub use heights::Heights;
 pub use instancer::{
-    Instancer, Lattice, LatticeKind, MAX_MASKS, MAX_PALETTE, MAX_TYPES, Mask, MaskKind, MaskSlot, MaterialVariation,
-    Snap, Variation,
+    Instancer, Lattice, LatticeKind, MAX_MASKS, MAX_PALETTE, MAX_TYPES, Mask, MaskJoin, MaskKind, MaskSlot,
+    MaterialVariation, Snap, Variation,
 };
 pub use instancer_presets::InstancerPreset;
 pub use light::{Falloff, Light, LightKind};
@@ -95,11 +96,12 @@ pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,
 };
 pub use presets::material_presets;
+pub use response_curve::{CurvePreset, MAX_CURVE_POINTS, MIN_CURVE_GAP, MIN_CURVE_POINTS, ResponseCurve};
 pub use shadowing::Shadowing;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
 pub use texture::{NormalTexture, TextureSpace, Textures};
-pub use texture_image::{Pyramid, TexelForm, TexelLevel, TextureImage};
+pub use texture_image::{MAX_SHARES, Pyramid, ShareImage, TexelForm, TexelLevel, TextureImage};
 pub use texture_source::{
     ColorSpace, ColorTexture, HeightTexture, OpacityTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
 };

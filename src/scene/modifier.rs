@@ -175,7 +175,10 @@ pub struct ModifierSlot {
     pub modifier: Modifier,
 }
 
-slot_params!(ModifierSlot, modifier, enabled: true, "Whether it does anything.");
+slot_params!(ModifierSlot, modifier, {
+    /// Whether it does anything.
+    enabled: bool = true;
+});
 
 impl From<Modifier> for ModifierSlot {
     fn from(modifier: Modifier) -> Self {

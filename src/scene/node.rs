@@ -139,6 +139,11 @@ impl Node {
         self
     }
 
+    /// Whether an instancer can make copies of it.
+    pub fn can_be_type(&self) -> bool {
+        self.has_field() || matches!(self.kind, NodeKind::Mesh(_))
+    }
+
     /// Whether it can be an operand: only objects and groups have a field of their own.
     pub fn has_field(&self) -> bool {
         matches!(self.kind, NodeKind::Group(_) | NodeKind::Object(_))

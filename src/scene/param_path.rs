@@ -141,7 +141,7 @@ impl Part {
             Self::Dynamic(place) => ("dynamics", "dynamic", place),
             Self::Mask(place) => ("instancer.masks", "mask", place),
         };
-        let is_of_slot = SLOTS.iter().any(|slot| slot.prefix == part && slot.flag == name);
+        let is_of_slot = SLOTS.iter().any(|slot| slot.prefix == part && slot.own.contains(&name));
         if is_of_slot { format!("{part}[{place}].{name}") } else { format!("{part}[{place}].{inner}.{name}") }
     }
 
@@ -163,10 +163,10 @@ impl Part {
             let below = |rest: &'_ str| rest.strip_prefix(slot.inner)?.strip_prefix('.').map(str::len);
             let name = match below(rest) {
                 Some(length) => &rest[rest.len() - length..],
-                None if rest == slot.flag => rest,
+                None if slot.own.contains(&rest) => rest,
                 None => return None,
             };
-            let is_misplaced = name == slot.flag && below(rest).is_some();
+            let is_misplaced = slot.own.contains(&name) && below(rest).is_some();
             return (!is_misplaced).then_some(((slot.part)(whole(place)?), name));
         }
         for (prefix, part) in PARTS {
@@ -178,18 +178,18 @@ impl Part {
     }
 }
 
-/// A list of parts: its field, the field of the part in an entry, and the parameter that belongs to the entry itself.
+/// A list of parts: its field, the field of the part in an entry, and the parameters that belong to the entry itself.
 struct SlotList {
     prefix: &'static str,
     inner: &'static str,
-    flag: &'static str,
+    own: &'static [&'static str],
     part: fn(usize) -> Part,
 }
 
 const SLOTS: [SlotList; 3] = [
-    SlotList { prefix: "modifiers", inner: "modifier", flag: "enabled", part: Part::Modifier },
-    SlotList { prefix: "dynamics", inner: "dynamic", flag: "enabled", part: Part::Dynamic },
-    SlotList { prefix: "instancer.masks", inner: "mask", flag: "inverted", part: Part::Mask },
+    SlotList { prefix: "modifiers", inner: "modifier", own: &["enabled"], part: Part::Modifier },
+    SlotList { prefix: "dynamics", inner: "dynamic", own: &["enabled"], part: Part::Dynamic },
+    SlotList { prefix: "instancer.masks", inner: "mask", own: &["inverted", "join"], part: Part::Mask },
 ];
 
 /// A number in the form that paths use: without a sign or leading zeros.

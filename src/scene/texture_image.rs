@@ -63,6 +63,28 @@ pub struct TextureImage {
     pub(super) pixels: u64,
     /// Made on first use, by whether the numbers are meant as sRGB, and by form.
     pyramids: [[OnceLock<Arc<Pyramid>>; 3]; 2],
+    /// Made on first use.
+    shares: OnceLock<Arc<ShareImage>>,
+}
+
+/// Most pixels along a side of a [`ShareImage`].
+pub const MAX_SHARES: u32 = 256;
+
+/// The brightness of an image, from 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShareImage {
+    /// Columns and rows; at most [`MAX_SHARES`].
+    pub size: [u32; 2],
+    /// Row by row, four pixels each.
+    pub rows: Vec<[f32; 4]>,
+}
+
+impl ShareImage {
+    /// The brightness of a pixel.
+    pub fn at(&self, column: u32, line: u32) -> f64 {
+        let at = (line * self.size[0] + column) as usize;
+        f64::from(self.rows[at / 4][at % 4])
+    }
 }
 
 impl Content for TextureImage {
@@ -103,7 +125,7 @@ fn wide(codes: Vec<u8>) -> Vec<u16> {
 
 impl TextureImage {
     fn new(size: [u32; 2], channels: usize, codes: Vec<u16>, is_linear: bool, pixels: u64) -> Self {
-        Self { size, channels, codes, is_linear, pixels, pyramids: Default::default() }
+        Self { size, channels, codes, is_linear, pixels, pyramids: Default::default(), shares: OnceLock::new() }
     }
 
     /// Width and height.
@@ -116,6 +138,28 @@ impl TextureImage {
     pub fn pyramid(&self, is_srgb: bool, form: TexelForm) -> Arc<Pyramid> {
         let made = &self.pyramids[usize::from(is_srgb)][form as usize];
         Arc::clone(made.get_or_init(|| Arc::new(self.make(is_srgb, form))))
+    }
+
+    /// Its brightness as the file has it; of a large image that of a smaller version. Made once.
+    pub fn shares(&self) -> Arc<ShareImage> {
+        Arc::clone(self.shares.get_or_init(|| Arc::new(self.make_shares())))
+    }
+
+    fn make_shares(&self) -> ShareImage {
+        let pyramid = self.pyramid(false, TexelForm::Color);
+        let fits = |level: &&TexelLevel| level.size.iter().all(|side| *side <= MAX_SHARES);
+        let level = pyramid.levels.iter().find(fits).or(pyramid.levels.last()).expect("there is always one texel");
+        // Weights of Rec. 709.
+        let brightness = |x: u32, y: u32| {
+            let word = level.texels[level.index(x, y)];
+            let channel = |bit: u32| ((word >> bit & 1023) as f32 / 1023.0).powi(2);
+            (0.2126 * channel(0) + 0.7152 * channel(10) + 0.0722 * channel(20)).min(1.0)
+        };
+        let [width, height] = level.size;
+        let mut shares: Vec<f32> = (0..width * height).map(|i| brightness(i % width, i / width)).collect();
+        shares.resize(shares.len().next_multiple_of(4), 0.0);
+        let rows = shares.chunks_exact(4).map(|four| [four[0], four[1], four[2], four[3]]).collect();
+        ShareImage { size: level.size, rows }
     }
 
     fn make(&self, is_srgb: bool, form: TexelForm) -> Pyramid {
@@ -247,6 +291,20 @@ mod tests {
             let v = if *shown <= 0.0031308 { 12.92 * shown } else { 1.055 * shown.powf(1.0 / 2.4) - 0.055 };
             assert_eq!((v * 255.0).round() as u16, code, "{linear} is shown as {shown}");
         }
+    }
+
+    #[test]
+    fn shares_are_the_brightness_of_small_images_and_of_versions_of_large_ones() {
+        let shares = |size, color: &dyn Fn(u32, u32) -> [u8; 3]| {
+            Attachment::<TextureImage>::painted("x.png", size, color).content().unwrap().shares()
+        };
+        let small = shares([3, 2], &|x, y| if [x, y] == [2, 1] { [255; 3] } else { [0; 3] });
+        assert_eq!((small.size, small.at(2, 1), small.at(1, 1)), ([3, 2], 1.0, 0.0));
+        let green = shares([1, 1], &|_, _| [0, 255, 0]);
+        assert!((green.at(0, 0) - 0.7152).abs() < 1e-6);
+        let large = shares([700, 300], &|x, _| if x % 2 == 0 { [0; 3] } else { [255; 3] });
+        assert_eq!(large.size, [175, 75]);
+        assert!((large.at(80, 40) - 0.5).abs() < 0.01, "{}", large.at(80, 40));
     }
 
     #[test]

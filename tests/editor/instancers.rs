@@ -5,7 +5,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::editor::{Command, Editor};
 use isolith::scene::{
-    Instancer, Lattice, LatticeKind, MAX_DYNAMICS, Mask, MaskKind, Node, NodeId, NodeKind, Scene, Shape, Snap,
+    CurvePreset, Instancer, Lattice, LatticeKind, MAX_DYNAMICS, Mask, MaskJoin, MaskKind, Node, NodeId, NodeKind,
+    Scene, Shape, Snap,
 };
 
 use super::{click, list_box, open_tall, row, scene, select, undo_all};
@@ -201,6 +202,38 @@ fn masks_are_added_inverted_reordered_and_removed() {
     press(&mut harness, "Remove the mask");
     assert_eq!(kinds(&harness), [MaskKind::Noise]);
     assert_eq!(undo_all(&mut harness), 6);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn the_curve_of_a_mask_is_chosen_and_dragged() {
+    let (mut harness, scene, id) = with_instancer();
+    harness.get_by_label_contains("Add mask").click();
+    harness.run();
+    press(&mut harness, "Image");
+    assert!(says(&harness, "No image"), "its file is named");
+    assert!(says(&harness, "has no image for its mask 1"), "in the status bar");
+    let curve = |harness: &Harness<'_, Editor>| instancer(harness, id).masks[0].curve.clone();
+    choose(&mut harness, "Join", "Subtract");
+    assert_eq!(instancer(&harness, id).masks[0].join, MaskJoin::Subtract);
+    choose(&mut harness, "Response", "Peak");
+    assert_eq!(curve(&harness), CurvePreset::Peak.curve());
+    let plot = harness.get_by_label("Response curve").rect();
+    // The peak, in the middle of the upper edge, goes to a quarter of the height.
+    let from = egui::pos2(plot.center().x, plot.top() + 6.0);
+    let to = egui::pos2(plot.center().x - 30.0, plot.bottom() - 6.0 - 0.25 * (plot.height() - 12.0));
+    super::pointer(&mut harness, from, true);
+    harness.step();
+    for step in 1..=4 {
+        harness.event(egui::Event::PointerMoved(from + (to - from) * (step as f32 / 4.0)));
+        harness.step();
+    }
+    super::pointer(&mut harness, to, false);
+    harness.settle();
+    let dragged = curve(&harness);
+    assert!((dragged.points[1][1] - 0.25).abs() < 0.03 && dragged.points[1][0] < 0.48, "{dragged:?}");
+    assert_eq!(dragged.points.len(), 3);
+    assert_eq!(undo_all(&mut harness), 4);
     assert_eq!(*harness.state().document().scene(), scene);
 }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind_rows::SEAM_GAP;
 use super::measures::Measures;
 use isolith_geometry::ArcPiece;
-use isolith_scene::{Falloff, LightKind, Mask, NodeKind, Shape, profile_curve, tube_curve};
+use isolith_scene::{Dynamic, Falloff, LightKind, Mask, NodeKind, Shape, profile_curve, tube_curve};
 
 /// Corners of a circle.
 const CORNERS: usize = 48;
@@ -24,7 +24,10 @@ pub fn lines(m: &Measures<'_>) -> Vec<Vec<DVec3>> {
             let radius = (m.number("blend.radius") * m.blend_unit).abs() + SEAM_GAP * m.reach;
             vec![circle(m.seam, m.right, m.up, radius)]
         }
-        NodeKind::Instancer(instancer) => instancer.masks.iter().flat_map(|slot| mask_lines(&slot.mask)).collect(),
+        NodeKind::Instancer(instancer) => {
+            let masks = instancer.masks.iter().flat_map(|slot| mask_lines(&slot.mask));
+            masks.chain(m.node.dynamics.iter().flat_map(|slot| wind_lines(&slot.dynamic))).collect()
+        }
         NodeKind::Group(_) | NodeKind::Mesh(_) => Vec::new(),
     }
 }
@@ -33,8 +36,22 @@ pub fn lines(m: &Measures<'_>) -> Vec<Vec<DVec3>> {
 fn mask_lines(mask: &Mask) -> Vec<Vec<DVec3>> {
     match *mask {
         Mask::Radius { inner, outer } => [inner, outer].map(|at| circle(DVec3::ZERO, DVec3::X, DVec3::Z, at)).into(),
+        Mask::Image { width, length, offset, .. } => {
+            let corner = |x: f64, z: f64| DVec3::new(offset[0] + 0.5 * x * width, 0.0, offset[2] + 0.5 * z * length);
+            vec![vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]]
+        }
         Mask::Noise { .. } | Mask::Height { .. } | Mask::Slope { .. } => Vec::new(),
     }
+}
+
+/// How far a placed source of wind reaches, and how far at full strength.
+fn wind_lines(dynamic: &Dynamic) -> Vec<Vec<DVec3>> {
+    let Dynamic::Wind { radius, source, core, .. } = *dynamic else { return Vec::new() };
+    if radius <= 0.0 {
+        return Vec::new();
+    }
+    let rings = [radius, core * radius].into_iter().filter(|radius| *radius > 0.0);
+    rings.map(|radius| circle(source.into(), DVec3::X, DVec3::Z, radius)).collect()
 }
 
 fn circle(center: DVec3, a: DVec3, b: DVec3, radius: f64) -> Vec<DVec3> {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::measures::Measures;
-use super::rows::{HandleRow, one, zero};
+use super::rows::{BOTH, HandleRow, one, zero};
 use super::shape_rows;
 use isolith_scene::{Lattice, LightKind, MaskKind, Node, NodeKind, Part};
 
@@ -134,6 +134,16 @@ const RADIUS_MASK: &[HandleRow] = &[
     HandleRow::along("outer", zero, across).at_least(|m| m.number("inner")),
 ];
 
+/// The image lies around the middle that its offset gives, which has no handle.
+const IMAGE_MASK: &[HandleRow] = &[
+    HandleRow::extent("width", 0).shaped(0.5, middle_of_image, BOTH),
+    HandleRow::extent("length", 2).shaped(0.5, middle_of_image, BOTH),
+];
+
+fn middle_of_image(m: &Measures<'_>) -> DVec3 {
+    m.vector("offset") * DVec3::new(1.0, 0.0, 1.0)
+}
+
 /// The rows of the masks of an instancer, each with its part of the node.
 pub fn mask_rows(node: &Node) -> Vec<(Part, &'static [HandleRow])> {
     let NodeKind::Instancer(instancer) = &node.kind else { return Vec::new() };
@@ -142,6 +152,7 @@ pub fn mask_rows(node: &Node) -> Vec<(Part, &'static [HandleRow])> {
         MaskKind::Height => HEIGHT_MASK,
         MaskKind::Slope => SLOPE_MASK,
         MaskKind::Radius => RADIUS_MASK,
+        MaskKind::Image => IMAGE_MASK,
     };
     instancer.masks.iter().enumerate().map(|(at, slot)| (Part::Mask(at), rows(slot.mask.kind()))).collect()
 }

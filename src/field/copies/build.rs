@@ -7,14 +7,14 @@ use glam::{DAffine3, DVec3};
 
 use super::dynamics::{Envelope, copy_envelope};
 use super::gpu::place_rows;
-use super::hash::copy_hash;
 use super::instancer::{FlatInstancer, FlatLattice, FlatMask, Place, PlaceList, Placement};
+use super::masks::mask_cuts;
 use super::moved_scene::node_dynamics;
 use super::variation::{Copy, copy_of_place};
 use super::walk::copy_sphere;
 use crate::hierarchy::Hierarchy;
 use isolith_geometry::Aabb;
-use isolith_scene::{Instancer, Lattice, Mask, MaskSlot, Node, Variation};
+use isolith_scene::{Instancer, Lattice, Mask, Node, Variation};
 
 /// A type of an instancer: how often it is chosen, and its bounds in the space of a copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,13 +53,15 @@ pub fn flat_instancer(
     let [least, most] = [variation.offset_min, variation.offset_max].map(DVec3::from_array);
     let offset = least.abs().max(most.abs());
     let offset = if is_listed { DVec3::splat(offset.length()) } else { offset };
+    let (masks, mask_rows) = flat_masks(instancer);
     let mut flat = FlatInstancer {
         id: node.id,
         world_from_local,
         placement: Placement::Lattice(masked_lattice(instancer)),
         seed: instancer.seed,
         probability: instancer.probability,
-        masks: instancer.masks.iter().map(FlatMask::new).collect(),
+        masks,
+        mask_rows: Arc::new(if is_listed { Vec::new() } else { mask_rows }),
         variation,
         material: instancer.material,
         palette,
@@ -78,14 +80,37 @@ pub fn flat_instancer(
     flat
 }
 
+/// The masks, with the pixels of their images and the samples of their curves.
+fn flat_masks(instancer: &Instancer) -> (Vec<FlatMask>, Vec<[f32; 4]>) {
+    let (mut masks, mut rows) = (Vec::new(), Vec::new());
+    for slot in &instancer.masks {
+        let first = rows.len() as u32;
+        let mut mask = FlatMask::new(slot, [first; 2]);
+        if let Some(image) = &mask.image {
+            rows.extend_from_slice(&image.shares.rows);
+        }
+        if let Some(curve) = &mask.curve {
+            mask.curve_row = rows.len() as u32;
+            rows.extend(curve.samples.chunks_exact(4).map(|four| [four[0], four[1], four[2], four[3]]));
+        }
+        masks.push(mask);
+    }
+    (masks, rows)
+}
+
 /// The lattice without the cells that a mask leaves empty on all sides.
 fn masked_lattice(instancer: &Instancer) -> FlatLattice {
     let mut lattice = FlatLattice::of(&instancer.lattice).unwrap_or(FlatLattice::ONE);
-    for MaskSlot { mask, .. } in instancer.masks.iter().filter(|slot| !slot.inverted) {
-        match *mask {
+    for at in (0..instancer.masks.len()).filter(|at| mask_cuts(&instancer.masks, *at)) {
+        match instancer.masks[at].mask {
             Mask::Radius { outer, .. } => [0, 2].into_iter().for_each(|axis| lattice.keep(axis, [-outer, outer])),
             Mask::Height { from, to, .. } => lattice.keep(1, [from, to]),
-            Mask::Noise { .. } | Mask::Slope { .. } => {}
+            Mask::Image { ref image, width, length, offset, tiled: false } if image.content().is_some() => {
+                for (axis, size) in [(0, width), (2, length)] {
+                    lattice.keep(axis, [-0.5, 0.5].map(|end| offset[axis] + end * size));
+                }
+            }
+            Mask::Noise { .. } | Mask::Slope { .. } | Mask::Image { .. } => {}
         }
     }
     lattice
@@ -190,23 +215,5 @@ impl FlatLattice {
         let [low, high] = [self.low[axis], self.high[axis]];
         self.low[axis] = from.clamp(low, high);
         self.high[axis] = to.clamp(self.low[axis], high);
-    }
-}
-
-impl FlatMask {
-    /// A mask, ready for evaluation.
-    pub fn new(slot: &MaskSlot) -> Self {
-        let (key, params) = match slot.mask {
-            Mask::Noise { size, threshold, softness, seed } => {
-                (copy_hash(seed, [0; 3], 0x2000)[0], [threshold, softness.max(1e-6), 1.0 / size, 0.0])
-            }
-            Mask::Height { from, to, softness } => (0, [from, to, softness.max(1e-6), 0.0]),
-            Mask::Slope { from, to } => {
-                let [from, to] = [from, to].map(|angle| angle.to_radians().cos());
-                (0, [from.max(to + 1e-6), to, 0.0, 0.0])
-            }
-            Mask::Radius { inner, outer } => (0, [inner, outer.max(inner + 1e-6), 0.0, 0.0]),
-        };
-        Self { kind: slot.mask.kind(), inverted: slot.inverted, key, params }
     }
 }

@@ -69,6 +69,10 @@ impl Envelope {
 const CURL_SCALE: f64 = 0.4;
 /// How many times as long as along the wind a gust is across it.
 const GUST_ASPECT: f64 = 2.0;
+/// Wind has no direction at the source that it blows away from: there it is still, over this part of a gust.
+const CALM: f64 = 0.1;
+/// Values of noise over which gusts differ around a source.
+const GUST_SECTORS: f64 = 3.0;
 
 impl FlatDynamic {
     /// The motion at `time`. `at` is its place among the dynamics of its node, `seed` that of the instancer.
@@ -80,6 +84,7 @@ impl FlatDynamic {
             phase: Coordinate::default(),
             a: [0.0; 4],
             b: [0.0; 4],
+            c: [0.0; 3],
             place: [Coordinate::default(); 3],
             rows: [DVec3::ZERO; 3],
         };
@@ -94,15 +99,7 @@ impl FlatDynamic {
         let unit = |axis: [f64; 3], or: DVec3| DVec3::from_array(axis).try_normalize().unwrap_or(or);
         let with = |v: DVec3, w: f64| [v.x, v.y, v.z, w];
         match *dynamic {
-            Dynamic::Wind { direction, angle, steady, gust_size, speed, softness, flutter, frequency, radius } => {
-                let along = unit([direction[0], 0.0, direction[2]], DVec3::X);
-                let across = DVec3::new(-along.z, 0.0, along.x);
-                flat.phase = periods(frequency, 0.0);
-                flat.a = with(along, angle.to_radians());
-                flat.b = [steady, softness, flutter.to_radians(), radius];
-                flat.place[0] = Coordinate::new(-speed * time / gust_size);
-                flat.rows = [along / gust_size, across / (gust_size * GUST_ASPECT), DVec3::ZERO];
-            }
+            Dynamic::Wind { .. } => flat.set_wind(dynamic, time),
             Dynamic::Sway { axis, angle, frequency, phase, spread } => {
                 flat.phase = periods(frequency, phase);
                 flat.a = with(unit(axis, DVec3::Z), angle.to_radians());
@@ -151,6 +148,23 @@ impl FlatDynamic {
                 flat.rows = DVec3::AXES.map(|axis| axis / size);
             }
         }
+    }
+
+    fn set_wind(&mut self, dynamic: &Dynamic, time: f64) {
+        let Dynamic::Wind { direction, angle, steady, gust_size, speed, softness, flutter, frequency, .. } = *dynamic
+        else {
+            return;
+        };
+        let Dynamic::Wind { radius, source, core, radial, .. } = *dynamic else { return };
+        let along = DVec3::new(direction[0], 0.0, direction[2]).try_normalize().unwrap_or(DVec3::X);
+        let across = DVec3::new(-along.z, 0.0, along.x);
+        self.phase = Coordinate::new(frequency * time);
+        self.a = [along.x, along.y, along.z, angle.to_radians()];
+        self.b = [steady, softness, flutter.to_radians(), radius];
+        self.c = [radial, core, gust_size.recip()];
+        self.place[0] = Coordinate::new(-speed * time / gust_size);
+        let straight = (1.0 - radial) / gust_size;
+        self.rows = [along * straight, across * (straight / GUST_ASPECT), source.into()];
     }
 
     /// How far it takes a copy at any time.
@@ -241,15 +255,21 @@ impl FlatDynamic {
 
     /// A tilt with the wind about the copy's root, and a quiver.
     fn wind(&self, randoms: [f64; 3], position: DVec3) -> CopyMotion {
-        let along = DVec3::new(self.a[0], 0.0, self.a[2]);
-        let across = DVec3::new(-along.z, 0.0, along.x);
         let [steady, softness, flutter, radius] = self.b;
-        let [s, t, _] = self.coordinates(position);
+        let [radial, core, gusts] = self.c;
+        let off = position - self.rows[2];
+        let way = DVec3::new(off.x, 0.0, off.z);
+        let outward = way / (way.length_squared() + (CALM / gusts).powi(2)).sqrt();
+        let along = DVec3::new(self.a[0], 0.0, self.a[2]) * (1.0 - radial) + outward * radial;
+        let across = DVec3::new(-along.z, 0.0, along.x);
+        let [s, t] = [0, 1].map(|i| self.place[i].moved(self.rows[i].dot(position)));
+        let (s, t) = (s.moved(radial * way.length() * gusts), t.moved(radial * GUST_SECTORS * outward.x));
         // From 0 to 1: a gust never turns the wind around.
         let gust = copy_noise_2(self.key, [s, t]);
         let mut strength = steady + (1.0 - steady) * gust;
         if radius > 0.0 {
-            let near = (1.0 - position.length_squared() / (radius * radius)).max(0.0);
+            let beyond = (off.length() / radius - core).max(0.0) / (1.0 - core);
+            let near = (1.0 - beyond * beyond).max(0.0);
             strength *= near * near;
         }
         // 1 for the softest copies.

@@ -1,13 +1,13 @@
 //! Instancers as the GPU reads them. The counterparts are in `shaders/copy/instancer.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::hash::Channel;
 use super::instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, Place, Placement};
 use super::noise::Coordinate;
 use crate::hierarchy::Hierarchy;
-use isolith_scene::{MAX_DYNAMICS, MAX_MASKS, MAX_PALETTE, MAX_TYPES};
+use isolith_scene::{DynamicKind, MAX_DYNAMICS, MAX_MASKS, MAX_PALETTE, MAX_TYPES, MaskKind};
 
 /// A mask.
 #[repr(C)]
@@ -16,10 +16,11 @@ pub struct GpuCopyMask {
     kind: u32,
     inverted: u32,
     key: u32,
-    padding: u32,
+    join: u32,
     params: [f32; 4],
     whole: [i32; 2],
     fraction: [f32; 2],
+    curve: [f32; 4],
 }
 
 /// A motion.
@@ -172,18 +173,18 @@ fn fill_lists(gpu: &mut GpuInstancer, instancer: &FlatInstancer, place: DVec3) {
         gpu.roots[..list.roots.len()].copy_from_slice(&list.roots);
     }
     for (to, mask) in gpu.masks.iter_mut().zip(&instancer.masks) {
-        *to = gpu_mask(mask, place);
+        *to = gpu_mask(mask, place, gpu.first_row);
     }
     for (at, (to, dynamic)) in gpu.dynamics.iter_mut().zip(&instancer.dynamics).enumerate() {
         *to = gpu_dynamic(dynamic, at, place);
     }
 }
 
-/// The places of a list, and the tree over them; empty for a lattice.
+/// The places of a list, and the tree over them; of a lattice the images of its masks.
 pub fn gpu_places(instancer: &FlatInstancer) -> &[[f32; 4]] {
     match &instancer.placement {
         Placement::List(list) => &list.rows,
-        Placement::Lattice(_) => &[],
+        Placement::Lattice(_) => &instancer.mask_rows,
     }
 }
 
@@ -209,21 +210,51 @@ pub(super) fn place_rows<'a>(of_types: impl Iterator<Item = &'a [Place]>, tree: 
     rows
 }
 
-fn gpu_mask(mask: &FlatMask, place: DVec3) -> GpuCopyMask {
+/// `place` is that of the anchor; rows of images begin at `first_row`.
+fn gpu_mask(mask: &FlatMask, place: DVec3, first_row: u32) -> GpuCopyMask {
     // Only noise uses them.
     let at = [place.x, place.z].map(|v| Coordinate::new(v * mask.params[2]));
-    GpuCopyMask {
+    let mut gpu = GpuCopyMask {
         kind: mask.kind as u32,
         inverted: mask.inverted.into(),
         key: mask.key,
-        padding: 0,
+        join: mask.join as u32,
         params: floats(mask.params),
         whole: at.map(|c| c.whole),
         fraction: at.map(fraction),
+        curve: [-1.0, 0.0, 0.0, 0.0],
+    };
+    if let Some(curve) = &mask.curve {
+        // Rows are fewer than the whole numbers that f32 holds.
+        gpu.curve = floats([curve.slope, curve.empty[0], curve.empty[1], f64::from(first_row + mask.curve_row)]);
     }
+    match &mask.image {
+        Some(image) => {
+            let [a, b, width, height] = mask.params;
+            let (mut at, size) = (image.origin + DVec2::new(a * place.x, b * place.z), DVec2::new(width, height));
+            if image.tiled {
+                at -= size * (at / size).floor();
+            }
+            gpu.whole = [(first_row + image.first_row) as i32, if image.tiled { MASK_TILED } else { MASK_ONCE }];
+            gpu.fraction = floats(at.to_array());
+        }
+        None if mask.kind == MaskKind::Image => gpu.whole = [0, MASK_MISSING],
+        None => {}
+    }
+    gpu
 }
 
+/// How the image of a mask lies, as in `shaders/copy/masks.wgsl`.
+const MASK_ONCE: i32 = 0;
+const MASK_TILED: i32 = 1;
+const MASK_MISSING: i32 = 2;
+
 fn gpu_dynamic(dynamic: &FlatDynamic, at: usize, place: DVec3) -> GpuCopyDynamic {
+    let mut rows = dynamic.rows;
+    if dynamic.kind == DynamicKind::Wind {
+        // The source, relative to the anchor as positions are.
+        rows[2] -= place;
+    }
     let place = [0, 1, 2].map(|i| dynamic.place[i].moved(dynamic.rows[i].dot(place)));
     GpuCopyDynamic {
         kind: dynamic.kind as u32,
@@ -236,7 +267,7 @@ fn gpu_dynamic(dynamic: &FlatDynamic, at: usize, place: DVec3) -> GpuCopyDynamic
         channel: Channel::Dynamics as u32 + at as u32,
         place: place.map(fraction),
         padding: 0,
-        rows: dynamic.rows.map(|row| floats([row.x, row.y, row.z, 0.0])),
+        rows: [0, 1, 2].map(|i| floats([rows[i].x, rows[i].y, rows[i].z, dynamic.c[i]])),
     }
 }
 

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
 
+use super::mask_curve::FlatCurve;
 use super::noise::Coordinate;
 use crate::hierarchy::Hierarchy;
 use isolith_geometry::{Aabb, singular_values};
-use isolith_scene::{DynamicKind, MaskKind, MaterialVariation, NodeId, Variation};
+use isolith_scene::{DynamicKind, MaskJoin, MaskKind, MaterialVariation, NodeId, ShareImage, Variation};
 
 /// An instancer with its place in the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +23,11 @@ pub struct FlatInstancer {
     pub seed: u32,
     /// Share of the places where a copy stands, before masks.
     pub probability: f64,
-    /// Masks of existence; they multiply.
+    /// Masks of existence.
     pub masks: Vec<FlatMask>,
+    /// The pixels of their images and the samples of their curves as the GPU reads them, where it evaluates masks: in
+    /// lattices.
+    pub mask_rows: Arc<Vec<[f32; 4]>>,
     /// Ranges of the transforms.
     pub variation: Variation,
     /// How much materials differ.
@@ -96,18 +100,39 @@ pub struct Place {
     pub up: f64,
 }
 
-/// A mask. The GPU reads the parameters as they are, see `shaders/copy/mask.wgsl`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A mask. The GPU reads the parameters as they are, see `shaders/copy/masks.wgsl`.
+#[derive(Clone, Debug, PartialEq)]
 pub struct FlatMask {
     /// Its kind.
     pub kind: MaskKind,
     /// Whether it is turned around.
     pub inverted: bool,
+    /// How it joins those before it.
+    pub join: MaskJoin,
     /// Seed of its noise.
     pub key: u32,
     /// Noise: threshold, softness, 1 / size. Height: from, to, softness. Slope: cosines of both angles. Radius: inner,
-    /// outer.
+    /// outer. Image: pixels per meter along X and Z, columns and rows.
     pub params: [f64; 4],
+    /// What becomes of its share; none for what changes nothing.
+    pub curve: Option<Arc<FlatCurve>>,
+    /// Its first row among [`FlatInstancer::mask_rows`].
+    pub curve_row: u32,
+    /// Its image.
+    pub image: Option<FlatMaskImage>,
+}
+
+/// The image of a mask.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatMaskImage {
+    /// Its pixels.
+    pub shares: Arc<ShareImage>,
+    /// Its first row among [`FlatInstancer::mask_rows`].
+    pub first_row: u32,
+    /// Where the instancer's origin is in the image, in pixels from its upper left corner.
+    pub origin: DVec2,
+    /// Whether it repeats.
+    pub tiled: bool,
 }
 
 /// A motion. The GPU reads the parameters as they are, see `shaders/copy/dynamics.wgsl`.
@@ -123,9 +148,11 @@ pub struct FlatDynamic {
     pub a: [f64; 4],
     /// Wind: steady share, softness, flutter in radians, radius. Others: spread over the copies, octaves, amplitude.
     pub b: [f64; 4],
+    /// Wind: how far it blows away from its source, share of the radius without falloff, gusts per meter.
+    pub c: [f64; 3],
     /// Noise coordinates at the instancer's origin; those of a point are this plus `rows` times the point.
     pub place: [Coordinate; 3],
-    /// See `place`.
+    /// See `place`. The third one of wind is the place of its source.
     pub rows: [DVec3; 3],
 }
 

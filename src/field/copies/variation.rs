@@ -4,9 +4,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::dynamics::{CopyMotion, copy_motion};
 use super::hash::{Channel, copy_randoms};
-use super::instancer::{FlatInstancer, FlatMask, Placement};
-use super::noise::{Coordinate, copy_noise_2};
-use isolith_scene::MaskKind;
+use super::instancer::{FlatInstancer, Placement};
+use super::masks::copy_masks;
 
 /// A copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,27 +58,10 @@ pub fn copy_of_place(instancer: &FlatInstancer, place: usize) -> Option<Copy> {
 /// The type of a copy at a place with this cosine of the slope of the ground; `None` if there is no copy.
 fn copy_kind(instancer: &FlatInstancer, cell: [i32; 3], base: DVec3, up: f64) -> Option<u32> {
     let [exists, kind, _] = copy_randoms(instancer.seed, cell, Channel::Choice as u32);
-    let share = instancer.masks.iter().fold(instancer.probability, |share, mask| share * copy_mask(mask, base, up));
-    if exists >= share {
+    if exists >= instancer.probability * copy_masks(&instancer.masks, base, up) {
         return None;
     }
     instancer.shares.iter().position(|sum| kind < *sum).map(|kind| kind as u32)
-}
-
-/// The share of a mask at a place, from 0 to 1.
-pub fn copy_mask(mask: &FlatMask, at: DVec3, up: f64) -> f64 {
-    let [a, b, c, _] = mask.params;
-    let share = match mask.kind {
-        MaskKind::Noise => {
-            let noise = copy_noise_2(mask.key, [at.x, at.z].map(|v| Coordinate::new(v * c)));
-            ((noise - a) / b + 0.5).clamp(0.0, 1.0)
-        }
-        MaskKind::Height => ((at.y - a) / c).clamp(0.0, 1.0) * ((b - at.y) / c).clamp(0.0, 1.0),
-        // Cosines fall with the angle.
-        MaskKind::Slope => ((up - b) / (a - b)).clamp(0.0, 1.0),
-        MaskKind::Radius => ((b - at.x.hypot(at.z)) / (b - a)).clamp(0.0, 1.0),
-    };
-    if mask.inverted { 1.0 - share } else { share }
 }
 
 /// A copy that exists, of type `kind`, moved and turned from its base.

@@ -42,7 +42,7 @@ pub struct CopyCone {
 
 impl CopyCone {
     /// Where the cone enters and leaves a box: its bounds along each axis alone, so it may leave later.
-    fn interval(&self, bounds: &Aabb) -> RayLimits {
+    pub(super) fn interval(&self, bounds: &Aabb) -> RayLimits {
         let RayLimits { mut near, mut far } = self.limits;
         for axis in 0..3 {
             let (origin, direction) = (self.axis.origin[axis], self.axis.direction[axis]);

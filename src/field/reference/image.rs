@@ -20,7 +20,7 @@ use crate::light::lighting::lighting_surface;
 use crate::light::texture::{textured_mixture, textured_point};
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_material::mesh_material;
-use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
+use crate::mesh_rays::{MeshRayHit, Meshes, trace_meshes_of_pixel};
 use crate::mixture::mixture_material;
 use crate::scene_eval::SceneEvaluator;
 use crate::veil::Veils;
@@ -177,7 +177,7 @@ struct Pixel {
 }
 
 /// The nearest hits of a ray: on a field, if any, and on a mesh that is not behind it, if any.
-type Met = (March, Option<(usize, MeshHit)>);
+type Met = (March, Option<MeshRayHit>);
 
 impl View<'_> {
     fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
@@ -214,9 +214,9 @@ impl View<'_> {
             }
             material = look.map_or(material, |look| look_varied(material, &look));
             (hit.t, hit.leaf, normal, material, 1.0)
-        } else if let Some((index, hit)) = mesh {
-            let (normal, material, occlusion) = self.mesh_surface(index, &hit, ray.direction);
-            (hit.t, MESH_BIT | index as u32, normal, material, occlusion)
+        } else if let Some(found) = mesh {
+            let (normal, material, occlusion) = self.mesh_surface(&found, ray.direction);
+            (found.hit.t, MESH_BIT | found.index as u32, normal, material, occlusion)
         } else {
             let color = environment_background(ray.direction, &EnvironmentLight::of(self.flat));
             let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
@@ -235,7 +235,7 @@ impl View<'_> {
     fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray, at: PixelSample) -> Result<Met, TraceError> {
         let range = [self.camera.near, self.camera.far];
         let mesh = trace_meshes_of_pixel(self.flat, self.meshes, ray, range, at);
-        let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
+        let limit = mesh.as_ref().map_or(self.camera.far, |found| found.hit.t);
         tracer.set_sample(at);
         Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
     }
@@ -249,7 +249,9 @@ impl View<'_> {
             let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray }, at)?;
             Ok(match (march.hit, mesh) {
                 (Some(hit), _) => Glimpse { depth: hit.t as f32, node: node_of(self.flat, hit.leaf) },
-                (None, Some((index, hit))) => Glimpse { depth: hit.t as f32, node: Some(self.flat.meshes[index].id) },
+                (None, Some(found)) => {
+                    Glimpse { depth: found.hit.t as f32, node: Some(self.flat.meshes[found.index].id) }
+                }
                 (None, None) => Glimpse { depth: BACKGROUND_DEPTH, node: None },
             })
         };
@@ -270,16 +272,17 @@ impl View<'_> {
     }
 
     /// Normal, material and the share of the ambient light at a hit on a mesh.
-    fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial, f64) {
+    fn mesh_surface(&self, found: &MeshRayHit, direction: DVec3) -> (DVec3, SurfaceMaterial, f64) {
+        let MeshRayHit { index, ref hit, world_from_local, .. } = *found;
         let placed = &self.flat.meshes[index];
-        let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
+        let normal_from_local = world_from_local.matrix3.inverse().transpose();
         let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
         let mesh = self.meshes[index].as_ref().expect("it was hit");
         let own = placed.material.map(|material| SurfaceMaterial::from(&self.flat.materials[material as usize]));
         let (normal, material, occlusion) = match own {
             Some(material) => (normal, material, 1.0),
             None => {
-                let normal = mesh.mapped_normal(hit.triangle, hit.weights, normal, &placed.world_from_local.matrix3);
+                let normal = mesh.mapped_normal(hit.triangle, hit.weights, normal, &world_from_local.matrix3);
                 let (material, occlusion) = mesh_look(mesh, hit);
                 (normal, material, occlusion)
             }

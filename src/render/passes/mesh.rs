@@ -9,8 +9,9 @@ use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
 use super::frame_pass::{Building, FramePass};
+use super::mesh_copies::DrawnCopies;
 pub use super::mesh_instance::Instance;
-use super::mesh_instance::PlacedInstance;
+use super::mesh_instance::{CopyInstance, PlacedInstance};
 use super::mesh_textures::{samplers, upload_texture};
 use crate::gpu::Gpu;
 use crate::recipe::Pass;
@@ -20,7 +21,7 @@ use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::*;
 use crate::resources::targets::{BACKGROUND, Targets};
 use isolith_field::standpoint::ray_origin_depth;
-use isolith_field::{FlatScene, NO_LEAF};
+use isolith_field::{FlatScene, NO_LEAF, Warning};
 use isolith_geometry::Camera;
 use isolith_mesh::{MeshPart, Sampler, Surface, Texture, TextureUse, TriangleMesh};
 use isolith_wgsl::{ShaderError, assemble_plain};
@@ -29,6 +30,10 @@ use isolith_wgsl::{ShaderError, assemble_plain};
 #[derive(Debug)]
 pub struct MeshPass {
     pipelines: [MeshPipeline; 2],
+    /// The same for copies; made when the first ones are drawn.
+    copy_pipelines: Option<[MeshPipeline; 2]>,
+    copies: DrawnCopies,
+    view_layout: BindGroupLayout,
     instance_layout: BindGroupLayout,
     /// A sampler for each kind of texture lookup.
     samplers: HashMap<Sampler, wgpu::Sampler>,
@@ -53,6 +58,8 @@ struct Draw {
     offset: u32,
     /// Whether the file's own material is drawn, and has textures besides that of the base color.
     is_mapped: bool,
+    /// Its copies among all that are drawn, if it is the type of an instancer.
+    copies: Option<[u32; 2]>,
 }
 
 /// Alignment of dynamic offsets.
@@ -92,10 +99,13 @@ impl FramePass for MeshPass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let instance_layout = layout(device, "mesh instance", &[entry(0, both, uniform(true))]);
-        let plain = MeshPipeline::new(device, &layouts.view, &instance_layout, false)?;
-        let mapped = MeshPipeline::new(device, &layouts.view, &instance_layout, true)?;
+        let plain = MeshPipeline::new(device, &layouts.view, &instance_layout, [false, false])?;
+        let mapped = MeshPipeline::new(device, &layouts.view, &instance_layout, [true, false])?;
         Ok(Self {
             pipelines: [plain, mapped],
+            copy_pipelines: None,
+            copies: DrawnCopies::new(device),
+            view_layout: layouts.view.clone(),
             instance_layout,
             samplers: samplers(device),
             instances: SyncedBuffer::uniform(device, "mesh instances"),
@@ -125,16 +135,18 @@ impl MeshPass {
     /// read; `materials` holds the index of the material of each part.
     pub fn prepare(
         &mut self,
-        Gpu { device, queue, .. }: &Gpu,
+        gpu: &Gpu,
         flat: &FlatScene,
         meshes: &[Option<Arc<TriangleMesh>>],
         materials: &[Vec<u32>],
         camera: &Camera,
         size: [u32; 2],
-    ) {
+    ) -> Result<(), ShaderError> {
+        let Gpu { device, queue, .. } = gpu;
         self.uploaded.retain(|_, u| u.mesh.strong_count() > 0);
         self.textures.retain(|_, (texture, _)| texture.strong_count() > 0);
         self.draws.clear();
+        self.copies.clear();
         let mut bytes = Vec::new();
         for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
             let Some(mesh) = mesh else { continue };
@@ -144,22 +156,28 @@ impl MeshPass {
                 let uploaded = self.upload(device, queue, mesh);
                 self.uploaded.insert(key, uploaded);
             }
-            let seen = mesh.bounds.transformed(&placed.world_from_local).translated(-camera.position);
             let is_own = placed.material.is_none();
-            let placed = PlacedInstance::new(flat, placed, index, camera, ray_origin_depth(&seen, camera, size));
+            let (placed, copies) = if placed.instanced.is_some() {
+                let Some((shared, range)) = self.copies.add(flat, (index, mesh), camera, size) else { continue };
+                (shared, Some(range))
+            } else {
+                let seen = mesh.bounds.transformed(&placed.world_from_local).translated(-camera.position);
+                let depth = ray_origin_depth(&seen, camera, size);
+                (PlacedInstance::new(flat, placed, index, camera, depth), None)
+            };
             let mut last = None;
             for (part, look) in mesh.parts.iter().enumerate() {
                 let instance = placed.of_part(look, materials[index][part]);
                 let is_mapped = is_own && look.surface.has_maps();
                 // Most parts of a mesh differ only in their texture, which is not part of the instance.
                 if last != Some(instance) {
-                    self.draws.push(Draw { mesh: key, part, offset: bytes.len() as u32, is_mapped });
+                    self.draws.push(Draw { mesh: key, part, offset: bytes.len() as u32, is_mapped, copies });
                     bytes.extend_from_slice(bytemuck::bytes_of(&instance));
                     bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
                     last = Some(instance);
                 } else {
                     let offset = self.draws.last().map_or(0, |draw| draw.offset);
-                    self.draws.push(Draw { mesh: key, part, offset, is_mapped });
+                    self.draws.push(Draw { mesh: key, part, offset, is_mapped, copies });
                 }
             }
         }
@@ -169,6 +187,20 @@ impl MeshPass {
             let binding = window(self.instances.buffer(), size_of::<Instance>());
             self.instance_group = Some(bind(device, "mesh instances", &self.instance_layout, &[binding]));
         }
+        if self.copies.is_empty() {
+            return Ok(());
+        }
+        self.copies.upload(gpu);
+        if self.copy_pipelines.is_none() {
+            let of = |is_mapped| MeshPipeline::new(device, &self.view_layout, &self.instance_layout, [is_mapped, true]);
+            self.copy_pipelines = Some([of(false)?, of(true)?]);
+        }
+        Ok(())
+    }
+
+    /// Warnings about meshes of which only the nearest copies are drawn.
+    pub fn warnings(&self, flat: &FlatScene) -> Vec<Warning> {
+        self.copies.warnings(flat)
     }
 
     /// Clears the shared targets and draws the meshes.
@@ -213,16 +245,24 @@ impl MeshPass {
         }
         pass.set_bind_group(0, view, &[]);
         let (mut bound, mut set) = (None, None);
-        for Draw { mesh: key, part, offset, is_mapped } in &self.draws {
+        for Draw { mesh: key, part, offset, is_mapped, copies } in &self.draws {
             let mesh = &self.uploaded[key];
-            if set != Some(is_mapped) {
-                pass.set_pipeline(&self.pipelines[usize::from(*is_mapped)].pipeline);
-                set = Some(is_mapped);
+            let kind = (*is_mapped, copies.is_some());
+            if set != Some(kind) {
+                let made = if copies.is_some() { self.copy_pipelines.as_ref() } else { Some(&self.pipelines) };
+                let Some(made) = made else { continue };
+                pass.set_pipeline(&made[usize::from(*is_mapped)].pipeline);
+                (set, bound) = (Some(kind), None);
             }
             pass.set_bind_group(1, instances, &[*offset]);
             if bound != Some(key) {
+                if copies.is_some() {
+                    // Behind the buffers of a vertex.
+                    pass.set_vertex_buffer(if *is_mapped { 5 } else { 4 }, self.copies.buffer().slice(..));
+                }
                 let buffers = [&mesh.positions, &mesh.normals, &mesh.colors, &mesh.uvs];
-                for (slot, buffer) in buffers.into_iter().chain(&mesh.tangents).enumerate() {
+                let tangents = mesh.tangents.iter().filter(|_| *is_mapped || copies.is_none());
+                for (slot, buffer) in buffers.into_iter().chain(tangents).enumerate() {
                     pass.set_vertex_buffer(slot as u32, buffer.slice(..));
                 }
                 pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
@@ -230,7 +270,8 @@ impl MeshPass {
             }
             let UploadedPart { indices, plain, mapped } = &mesh.parts[*part];
             pass.set_bind_group(2, mapped.as_ref().filter(|_| *is_mapped).unwrap_or(plain), &[]);
-            pass.draw_indexed(indices.clone(), 0, 0..1);
+            let [from, to] = copies.unwrap_or([0, 1]);
+            pass.draw_indexed(indices.clone(), 0, from..to);
         }
     }
 
@@ -322,7 +363,7 @@ impl MeshPipeline {
         device: &wgpu::Device,
         view: &BindGroupLayout,
         instance: &BindGroupLayout,
-        is_mapped: bool,
+        [is_mapped, is_copied]: [bool; 2],
     ) -> Result<Self, ShaderError> {
         let filtered = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: true },
@@ -336,12 +377,16 @@ impl MeshPipeline {
         };
         let entries: Vec<_> = (0..count).flat_map(texture).collect();
         let textures = layout(device, "mesh textures", &entries);
-        let entry_points =
-            if is_mapped { ["mesh_mapped_vertex", "mesh_mapped_fragment"] } else { ["mesh_vertex", "mesh_fragment"] };
+        let entry_points = match (is_mapped, is_copied) {
+            (false, false) => ["mesh_vertex", "mesh_fragment"],
+            (true, false) => ["mesh_mapped_vertex", "mesh_mapped_fragment"],
+            (false, true) => ["mesh_copy_vertex", "mesh_fragment"],
+            (true, true) => ["mesh_mapped_copy_vertex", "mesh_mapped_fragment"],
+        };
         // Position, normal, color, texture coordinates, tangent.
         let formats = [Float32x3, Float32x3, Float32x4, Float32x4, Float32x4];
         let formats = if is_mapped { &formats[..] } else { &formats[..4] };
-        let pipeline = build_pipeline(device, &[view, instance, &textures], entry_points, formats)?;
+        let pipeline = build_pipeline(device, &[view, instance, &textures], entry_points, (formats, is_copied))?;
         Ok(Self { pipeline, textures })
     }
 }
@@ -350,7 +395,7 @@ fn build_pipeline(
     device: &wgpu::Device,
     groups: &[&BindGroupLayout],
     [vertex, fragment]: [&str; 2],
-    formats: &[wgpu::VertexFormat],
+    (formats, is_copied): (&[wgpu::VertexFormat], bool),
 ) -> Result<wgpu::RenderPipeline, ShaderError> {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("mesh"),
@@ -361,7 +406,7 @@ fn build_pipeline(
         .enumerate()
         .map(|(i, format)| [wgpu::VertexAttribute { format: *format, offset: 0, shader_location: i as u32 }])
         .collect();
-    let vertex_buffers: Vec<_> = attributes
+    let mut vertex_buffers: Vec<_> = attributes
         .iter()
         .map(|attribute| {
             Some(wgpu::VertexBufferLayout {
@@ -371,6 +416,10 @@ fn build_pipeline(
             })
         })
         .collect();
+    let rows = CopyInstance::attributes();
+    if is_copied {
+        vertex_buffers.push(Some(CopyInstance::layout(&rows)));
+    }
     use TextureFormat::{R32Float, R32Uint, Rgba16Float, Rgba32Float, Rgba32Uint};
     let targets = [R32Float, R32Uint, Rgba32Float, Rgba16Float, Rgba32Uint];
     Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -1,7 +1,7 @@
 //! Placed parts of meshes as the pass `mesh` reads them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use isolith_field::{FlatMesh, FlatScene, MESH_BIT};
 use isolith_geometry::Camera;
@@ -67,6 +67,55 @@ pub struct Instance {
     pub map_rows: [[f32; 4]; 8],
 }
 
+/// A copy of a mesh, in the layout of the shader: rows as those of [`Instance`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct CopyInstance {
+    eye_from_mesh: [[f32; 4]; 3],
+    normal: [[f32; 4]; 3],
+}
+
+/// Location of the first row of a copy in the shader.
+const FIRST_COPY_ROW: u32 = 8;
+
+impl CopyInstance {
+    /// Its rows as the shader takes them.
+    pub fn attributes() -> [wgpu::VertexAttribute; 6] {
+        [0, 1, 2, 3, 4, 5].map(|row| wgpu::VertexAttribute {
+            format: wgpu::VertexFormat::Float32x4,
+            offset: 16 * u64::from(row),
+            shader_location: FIRST_COPY_ROW + row,
+        })
+    }
+
+    /// One after the other in a buffer.
+    pub fn layout(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+        let step_mode = wgpu::VertexStepMode::Instance;
+        wgpu::VertexBufferLayout { array_stride: size_of::<Self>() as u64, step_mode, attributes }
+    }
+
+    /// A copy relative to a point of the world.
+    pub fn new(world_from_mesh: &DAffine3, eye: DVec3) -> Self {
+        let m = DAffine3 { translation: world_from_mesh.translation - eye, ..*world_from_mesh };
+        let row = |i: usize| {
+            let r = m.matrix3.row(i);
+            [r.x as f32, r.y as f32, r.z as f32, m.translation[i] as f32]
+        };
+        let n = normal_matrix(&m.matrix3);
+        let normal_row = |i: usize| {
+            let r = n.row(i);
+            [r.x as f32, r.y as f32, r.z as f32, 0.0]
+        };
+        Self { eye_from_mesh: [0, 1, 2].map(row), normal: [0, 1, 2].map(normal_row) }
+    }
+}
+
+/// Normals transform by the inverse transpose; only their direction matters.
+fn normal_matrix(m: &DMat3) -> DMat3 {
+    let n = m.inverse().transpose();
+    n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element())
+}
+
 /// A placed mesh: the data that its parts share.
 pub(super) struct PlacedInstance {
     eye_from_local: DAffine3,
@@ -79,9 +128,7 @@ impl PlacedInstance {
     pub fn new(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ray_origin_depth: f64) -> Self {
         let eye = camera.position + camera.rotation * DVec3::NEG_Z * ray_origin_depth;
         let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
-        // Normals transform by the inverse transpose; only their direction matters.
-        let n = m.matrix3.inverse().transpose();
-        let n = n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element());
+        let n = normal_matrix(&m.matrix3);
         let normal_row = |i: usize| {
             let r = n.row(i);
             [r.x as f32, r.y as f32, r.z as f32, 0.0]
@@ -102,6 +149,19 @@ impl PlacedInstance {
             ..Instance::zeroed()
         };
         Self { eye_from_local: m, common }
+    }
+
+    /// The same for a type whose copies have places of their own, of which the first is like all in being mirrored.
+    pub fn of_copies(
+        flat: &FlatScene,
+        placed: &FlatMesh,
+        index: usize,
+        first: &DAffine3,
+        (camera, ray_origin_depth): (&Camera, f64),
+    ) -> Self {
+        let placed = FlatMesh { world_from_local: *first, ..placed.clone() };
+        let Self { common, .. } = Self::new(flat, &placed, index, camera, ray_origin_depth);
+        Self { eye_from_local: DAffine3::IDENTITY, common }
     }
 
     /// The instance of a part, whose material has this index.

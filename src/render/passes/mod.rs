@@ -7,6 +7,7 @@ pub mod frame_pass;
 pub mod hiz;
 pub mod lights;
 pub mod mesh;
+mod mesh_copies;
 mod mesh_instance;
 mod mesh_textures;
 pub mod overlay;

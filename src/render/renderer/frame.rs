@@ -54,6 +54,8 @@ pub struct Frame {
     pub(super) rows: Vec<u32>,
     /// Offset of the template rows of each component with such a pipeline; parallel to the components.
     pub(super) template_rows: Vec<Option<u32>>,
+    /// Warnings about meshes of which copies are left out.
+    pub(super) of_meshes: Vec<isolith_field::Warning>,
     pub(super) origins: Vec<isolith_scene::NodeId>,
     /// Of each component whether its settings limit the steps of a ray.
     pub(super) is_limited: Vec<bool>,
@@ -98,6 +100,7 @@ impl Frame {
             sampling: None,
             going_on: GoingOn::default(),
             template_rows: Vec::new(),
+            of_meshes: Vec::new(),
             rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
             is_limited: flat.components.iter().map(isolith_field::Component::has_most_steps).collect(),

@@ -187,8 +187,8 @@ pub fn go_on(gpu: &Gpu, resources: &FrameResources, frame: &mut Frame, at: usize
 }
 
 impl Frame {
-    /// Warnings about shadows that are missing or not complete.
-    pub(super) fn shadow_warnings(&self, left_out: usize) -> Vec<Warning> {
+    /// Warnings about shadows that are missing or not complete, and about copies of meshes that are not drawn.
+    pub(super) fn other_warnings(&self, left_out: usize) -> Vec<Warning> {
         let [used, left] = self.shadowed_lights;
         let pixels = self.unfinished_shadows;
         let reasons = [
@@ -200,6 +200,6 @@ impl Frame {
         ];
         let node = self.origins.first().copied();
         let warning = |reason| Some(Warning { node: node?, name: String::new(), reason });
-        reasons.into_iter().flatten().filter_map(warning).collect()
+        reasons.into_iter().flatten().filter_map(warning).chain(self.of_meshes.iter().cloned()).collect()
     }
 }

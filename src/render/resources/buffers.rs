@@ -23,6 +23,11 @@ impl SyncedBuffer {
         Self::new(device, label, wgpu::BufferUsages::UNIFORM)
     }
 
+    /// An empty buffer of data for each vertex or instance.
+    pub fn vertex(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::VERTEX)
+    }
+
     /// An empty storage buffer that the device writes and the CPU reads back.
     pub fn read_back(device: &wgpu::Device, label: &'static str) -> Self {
         Self::new(device, label, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC)

@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::gpu::Gpu;
 use crate::resources::buffers::SyncedBuffer;
-use isolith_field::FlatScene;
+use isolith_field::{FlatMesh, FlatScene};
 use isolith_geometry::Aabb;
 use isolith_mesh::TriangleMesh;
 
@@ -65,6 +65,12 @@ impl MeshRayBuffer {
     /// Uploads changed data. `meshes` is parallel to `flat.meshes`; `origin` is that of the queries. Returns whether
     /// bind groups must be rebuilt. Builds the hierarchy of a mesh on its first use.
     pub fn set(&mut self, gpu: &Gpu, flat: &FlatScene, meshes: &[Option<Arc<TriangleMesh>>], origin: DVec3) -> bool {
+        // Copies of meshes stop no rays.
+        let stops = |(placed, mesh): (&FlatMesh, &Option<Arc<TriangleMesh>>)| {
+            mesh.clone().filter(|_| placed.instanced.is_none())
+        };
+        let meshes: Vec<_> = flat.meshes.iter().zip(meshes).map(stops).collect();
+        let meshes = &meshes[..];
         let is_replaced = self.hold(gpu, meshes);
         let mut placed = Vec::new();
         self.left_out.clear();

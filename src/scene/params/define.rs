@@ -402,16 +402,19 @@ macro_rules! choices {
 }
 pub(crate) use choices;
 
-/// Implements the parameters of an entry of a list: those of `$inner`, and a flag of the entry itself before them.
+/// Implements the parameters of an entry of a list: those of the entry itself, and those of `$inner` behind them.
 macro_rules! slot_params {
-    ($name:ident, $inner:ident, $flag:ident: $default:literal, $help:literal) => {
+    ($name:ident, $inner:ident, { $( $(#[doc = $help:literal])+ $own:ident: $type:ty = $default:expr; )+ }) => {
         impl $name {
-            fn flag() -> &'static $crate::params::Param {
-                let table = $crate::params::param_rows! {
-                    #[doc = $help]
-                    [stringify!($flag)] bool = $default, $crate::limits::NO_LIMITS.fixed();
-                };
-                &table[0]
+            fn own_params() -> &'static [$crate::params::Param] {
+                $crate::params::param_rows! { $(
+                    $(#[doc = $help])+
+                    [stringify!($own)] $type = $default, $crate::limits::NO_LIMITS.fixed();
+                )+ }
+            }
+
+            fn own_slot(name: &'static str) -> $crate::params::ParamSlot<'static> {
+                $crate::params::ParamSlot { prefix: "", name, table: Self::own_params() }
             }
         }
 
@@ -421,28 +424,32 @@ macro_rules! slot_params {
             }
 
             fn visit(&self, prefix: &str, visit: &mut $crate::params::Visit<'_>) {
-                visit(prefix, Self::flag(), $crate::params::ParamValue::Flag(self.$flag));
+                $( {
+                    let slot = $crate::params::ParamSlot { prefix, ..Self::own_slot(stringify!($own)) };
+                    $crate::params::ParamField::visit_field(&self.$own, slot, visit);
+                } )+
                 self.$inner.visit(prefix, visit);
             }
 
             fn find(&self, name: &str) -> Option<&'static $crate::params::Param> {
-                if name == Self::flag().name { Some(Self::flag()) } else { self.$inner.find(name) }
+                $( if name == stringify!($own) {
+                    return $crate::params::ParamField::find_field(&self.$own, Self::own_slot(stringify!($own)), "");
+                } )+
+                self.$inner.find(name)
             }
 
             fn get(&self, name: &str) -> Option<$crate::params::ParamValue> {
-                if name == Self::flag().name {
-                    $crate::params::ParamField::to_value(&self.$flag)
-                } else {
-                    self.$inner.get(name)
-                }
+                $( if name == stringify!($own) {
+                    return $crate::params::ParamField::to_value(&self.$own);
+                } )+
+                self.$inner.get(name)
             }
 
             fn set(&mut self, name: &str, value: $crate::params::ParamValue) -> bool {
-                if name == Self::flag().name {
-                    $crate::params::ParamField::set_field(&mut self.$flag, "", value)
-                } else {
-                    self.$inner.set(name, value)
-                }
+                $( if name == stringify!($own) {
+                    return $crate::params::ParamField::set_field(&mut self.$own, "", value);
+                } )+
+                self.$inner.set(name, value)
             }
         }
     };

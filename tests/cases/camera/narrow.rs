@@ -130,6 +130,7 @@ pub fn square(world_from_local: DAffine3, camera: Camera) -> BenchScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/narrow-pixels");
     let mut bench_scene = BenchScene::new("square", &Scene::new(), None);
     bench_scene.flat.meshes.push(FlatMesh {
+        instanced: None,
         id: NodeId(1),
         model: "quad.gltf".into(),
         world_from_local,
