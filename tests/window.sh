@@ -94,12 +94,12 @@ gone() { ! exists "$1"; }
 
 # Places in the window: rows of the tree, fields of the inspector of an object, something in the picture.
 row() { echo 120 $((ROWS + 24 * $1)); }
-ROWS=180
+ROWS=145
 BODY=0 BALL=1 RING=2
-FIELD_X="850 307"
-PICTURE_CORNER="300 520"
+FIELD_X="850 240"
+PICTURE_CORNER="330 420"
 FILE_MENU="69 17"
-EMPTY_ROOM="120 450"
+EMPTY_ROOM="120 250"
 
 run() {
     fresh
