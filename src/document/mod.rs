@@ -28,6 +28,7 @@ mod keying;
 mod keys;
 mod layout;
 mod links;
+mod packed_copies;
 mod placement;
 mod preferences;
 mod recent;

@@ -174,7 +174,7 @@ fn hint_of(state: &EditorState, ctx: &Context) -> String {
         }
         PointerActivity::OverHandle(false) => "Drag: change the value".into(),
         PointerActivity::Drawing => format!(
-            "Drag: draw, here {} · Wheel, ↑ ↓ while drawing: {} · Ctrl: snap · Toolbar, Shift A: another shape · Alt drag: orbit",
+            "Drag: draw, here {} · Wheel or arrows while drawing: {} · Ctrl: snap · Toolbar, Shift A: another shape · Alt drag: orbit",
             state.view.drawn.label().to_lowercase(),
             drawing::detail_name(state.view.drawn).unwrap_or("nothing more"),
         ),

@@ -112,6 +112,25 @@ pub fn icon_button(
     response.on_hover_text(name)
 }
 
+/// The same as a switch of several nodes: a dash stands in place of the icon if they differ.
+pub fn switch_button(
+    ui: &mut Ui,
+    (icon, name): (egui_material_icons::MaterialIcon, &str),
+    color: impl Into<Color32>,
+    mixed: bool,
+) -> Response {
+    if !mixed {
+        return icon_button(ui, icon, name, color);
+    }
+    let text = RichText::new(MIXED).strong().color(theme::TEXT);
+    let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_label(name.to_owned());
+        node.set_toggled(egui::accesskit::Toggled::Mixed);
+    });
+    response.on_hover_text(format!("{name}: now they differ"))
+}
+
 /// A line of text that takes effect at the end of typing: on Enter, Tab or a click elsewhere, not on Escape.
 pub fn line(ui: &mut Ui, name: &str, current: &str, hint: &str) -> (Id, Option<String>) {
     let id = ui.next_auto_id();

@@ -22,6 +22,11 @@ fn run(harness: &mut Harness<'_, Editor>, command: Command) {
     if command == Command::Play {
         harness.state_mut().run(command, &ctx);
     }
+    // With the draw tool, commands that add choose what is drawn.
+    if command.info().label == "Draw tool" {
+        let select = Command::all().find(|command| command.info().label == "Select tool").unwrap();
+        harness.state_mut().run(select, &ctx);
+    }
     // Whatever it has opened or begun.
     for _ in 0..2 {
         press(harness, Modifiers::NONE, Key::Escape);
