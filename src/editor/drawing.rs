@@ -74,7 +74,7 @@ fn origin(state: &EditorState, projection: &Projection, at: Pos2, ctrl: bool) ->
         Some(0 | 2) => DrawPlane::Outline { right: view.rotation * DVec3::X, normal: view.rotation * DVec3::Z },
         _ => {
             let placing = placing(state, Some(at));
-            let normal = placing.normal.unwrap_or(DVec3::Y);
+            let normal = placing.normal.unwrap_or(DVec3::Y).normalize_or(DVec3::Y);
             let point = if normal == DVec3::Y && snap > 0.0 {
                 let [x, z] = [placing.point.x, placing.point.z].map(|v| rounded(v, snap));
                 DVec3::new(x, placing.point.y, z)
@@ -170,8 +170,11 @@ impl DrawDrag {
                     return (radius >= 0.5 * step).then(|| (shape, Transform::from_translation(self.start)));
                 }
                 let shape = tidied(shape.with_lengths_times(radius / wide));
-                let rotation =
-                    if normal == DVec3::Y { DQuat::IDENTITY } else { DQuat::from_rotation_arc(DVec3::Y, normal) };
+                let rotation = if normal == DVec3::Y {
+                    DQuat::IDENTITY
+                } else {
+                    DQuat::from_rotation_arc(DVec3::Y, normal).normalize()
+                };
                 let place = self.start - normal * shape.bounds().min.y;
                 let translation = if normal == DVec3::Y { tidy_point(place) } else { place };
                 Some((shape, Transform { translation, rotation, ..Transform::IDENTITY }))

@@ -1,6 +1,6 @@
 //! The viewport: the picture and the pointer actions in it, which are navigating, picking and moving.
 
-use egui::{Color32, Key, Pos2, Rect, Response, Sense, Ui, pos2};
+use egui::{Color32, Event, Key, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
 use super::commands::entries::viewport_entries;
@@ -37,6 +37,8 @@ pub struct Viewport {
     surface: SurfaceUnderPointer,
     ghosts: Ghosts,
     hover: Hover,
+    /// The wheel belongs to what was drawn until it rests: egui spreads its way over some frames.
+    ignores_wheel: bool,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
     fly_speed: FlySpeed,
@@ -157,6 +159,7 @@ impl Viewport {
                 Some(Dragging::Transform(drag)) => {
                     state.view.last_motion = drag.last_motion().or(state.view.last_motion);
                 }
+                Some(Dragging::Draw(drag)) => self.finish_drawing(state, ui, &projection, (*drag, response.id)),
                 _ => {}
             }
         }
@@ -172,6 +175,25 @@ impl Viewport {
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || self.modal.is_active() || now < self.zooming_until;
         state.view.pointer = self.activity(state, ui, response);
+    }
+
+    /// A slow frame may hold the last of the way and of the wheel beside the release.
+    fn finish_drawing(
+        &mut self,
+        state: &mut EditorState,
+        ui: &Ui,
+        projection: &Projection,
+        (mut drag, widget): (DrawDrag, egui::Id),
+    ) {
+        let released = |event: &Event| match event {
+            Event::PointerButton { pos, pressed: false, modifiers, .. } => Some((*pos, modifiers.command)),
+            _ => None,
+        };
+        drag.turn(ui);
+        if let Some((at, ctrl)) = ui.input(|i| i.events.iter().find_map(released)) {
+            drag.follow(state, projection, at, ctrl, widget);
+        }
+        self.ignores_wheel = true;
     }
 
     fn context_menu(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
@@ -276,10 +298,12 @@ impl Viewport {
     fn zoom_by_wheel(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
         let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
         if matches!(self.dragging, Some(Dragging::Fly | Dragging::Draw(_))) {
+            self.ignores_wheel |= matches!(self.dragging, Some(Dragging::Draw(_)));
             return;
         }
         let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
-        if scroll == 0.0 && pinch == 1.0 {
+        self.ignores_wheel &= scroll != 0.0;
+        if self.ignores_wheel || (scroll == 0.0 && pinch == 1.0) {
             return;
         }
         let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
