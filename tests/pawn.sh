@@ -60,7 +60,7 @@ saved() {
 }
 # The middle of the viewport, and the buttons of the toolbar.
 MIDDLE_X=${MIDDLE_X:-602} MIDDLE_Y=${MIDDLE_Y:-385}
-CYLINDER=${CYLINDER:-"171 51"} CONE=${CONE:-"204 51"} TORUS=${TORUS:-"237 51"} SPHERE=${SPHERE:-"105 51"}
+BOX=${BOX:-"138 51"} CYLINDER=${CYLINDER:-"171 51"} CONE=${CONE:-"204 51"} TORUS=${TORUS:-"237 51"} SPHERE=${SPHERE:-"105 51"}
 
 # A drag with Ctrl from one place of the screen to another; the wheel turns by some notches before the button is released.
 drag() {
@@ -73,7 +73,8 @@ drag() {
     done
     sleep "$pause"
     if [ "$notches" != 0 ]; then
-        xdotool click --repeat "$notches" --delay 60 "$button"; sleep "$pause"
+        # A click of the wheel's button counts twice on this screen: as it is pressed and as it is released.
+        xdotool click --repeat $((notches / 2)) --delay 60 "$button"; sleep "$pause"
         counted viewport
     fi
     xdotool mouseup 1 keyup ctrl; sleep "$pause"
@@ -85,30 +86,31 @@ at_y() { awk -v v="$1" -v o="$zero_y" -v s="$scale" 'BEGIN { printf "%d", o - v 
 # Draws from the middle of a base to a corner, in meters.
 draw() { drag "$(at_x 0)" "$(at_y "$1")" "$(at_x "$2")" "$(at_y "$3")" "${4:-0}"; }
 
-number() { grep -o "\"$1\": *\[\?-\?[0-9.e-]*" "$file" | head -n 1 | grep -o -- '-\?[0-9.e-]*$'; }
-
-# From the front, the ground further below, with steps of 5 mm, drawing.
+# From the front, closer to a point above the pawn's middle, with steps of 5 mm, drawing.
 xdotool mousemove "$MIDDLE_X" "$((MIDDLE_Y + 1))"; sleep "$pause"
 keys 1; counted viewport
-xdotool keydown shift mousedown 1; sleep 0.2
-for step in 1 2 3 4; do xdotool mousemove "$MIDDLE_X" $((MIDDLE_Y + 44 * step)); sleep 0.1; done
-xdotool mouseup 1 keyup shift; sleep "$pause"; counted viewport
+xdotool mousemove "$MIDDLE_X" "$((MIDDLE_Y - 146))"; sleep "$pause"
+xdotool click --repeat 3 --delay 80 4; sleep 2; counted viewport
 keys F3; letters "snap lengths: 0.005"; keys Return; counted panel; counted panel
 xdotool mousemove "$MIDDLE_X" "$((MIDDLE_Y - 50))"; sleep "$pause"
 keys p; counted viewport
 
-# What an eye sees at the grid: where the origin is, and how large a meter. A ball says it, and is taken back.
-click $SPHERE
-before=$gestures before_in=$in_viewport
-drag 600 400 700 200
-gestures=$before in_viewport=$before_in
+# What an eye sees at the grid: where the origin is, and how large a meter. A box over the height of the picture says it,
+# and is taken back. Between its ends nothing is off by more than half a millimeter.
+click $BOX
+LOW=660 HIGH=90 RIGHT=802
+xdotool mousemove "$MIDDLE_X" "$LOW"; sleep "$pause"
+xdotool mousedown 1; sleep 0.3
+for step in 1 2 3 4; do xdotool mousemove $((MIDDLE_X + 50 * step)) $((LOW + (HIGH - LOW) * step / 4)); sleep 0.1; done
+xdotool mousemove "$RIGHT" "$HIGH"; sleep "$pause"
+xdotool mouseup 1; sleep "$pause"
 saved 1
-radius=$(number radius)
-read -r x y < <(grep -o '"translation": *\[[^]]*' "$file" | tail -n 1 | tr -d '[,' | awk '{ print $2, $3 }')
-# The width of the drag is a radius, and so is half of its height: both are 100 pixels.
-scale=$(awk -v r="$radius" 'BEGIN { print 100 / r }')
-zero_x=$(awk -v x="$x" -v s="$scale" 'BEGIN { print 600 - x * s }')
-zero_y=$(awk -v y="$y" -v s="$scale" 'BEGIN { print 300 + y * s }')
+numbers_of() { grep -o "\"$1\": *\[[^]]*" "$file" | tail -n 1 | tr -d '[,' ; }
+read -r _ _ height _ < <(numbers_of size)
+read -r _ x y _ < <(numbers_of translation)
+scale=$(awk -v h="$height" -v p="$((LOW - HIGH))" 'BEGIN { print p / h }')
+zero_x=$(awk -v x="$x" -v s="$scale" -v m="$MIDDLE_X" 'BEGIN { print m - x * s }')
+zero_y=$(awk -v y="$y" -v h="$height" -v s="$scale" -v p="$LOW" 'BEGIN { print p + (y - h / 2) * s }')
 keys ctrl+z
 picture begin
 
@@ -137,7 +139,12 @@ picture group
 drag "$(awk -v x="$(at_x 0)" 'BEGIN { printf "%d", x + 27 * 0.9 / 1.0018 + 0.5 }')" "$(awk -v y="$(at_y "$SEAM")" 'BEGIN { printf "%d", y + 27 * 0.44 / 1.0018 + 0.5 }')" \
     "$(awk -v x="$(at_x 0.06287)" 'BEGIN { printf "%d", x + 27 * 0.9 / 1.0018 + 0.5 }')" "$(awk -v y="$(at_y "$(awk -v s="$SEAM" 'BEGIN { print s - 0.03074 }')")" 'BEGIN { printf "%d", y + 27 * 0.44 / 1.0018 + 0.5 }')"
 keys r y; letters 20; keys Return; counted viewport
-saved 7
+# The sun is turned, too.
+for _ in $(seq 200); do
+    saved 7
+    [ "$(grep -c '"rotation"' "$file")" != 2 ] || break
+    sleep 0.5
+done
 picture done
 
 # Every number of the pawn: those of the example with theirs, rounded to 2 mm; the order of the parts is another.

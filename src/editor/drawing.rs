@@ -124,6 +124,11 @@ impl DrawDrag {
         self.notches += ui.input(|i| i.events.iter().map(by).sum::<f32>());
     }
 
+    /// Whether the wheel or the arrow keys have changed a detail.
+    pub fn has_turned(&self) -> bool {
+        self.notches != 0.0
+    }
+
     /// Follows the pointer: the first frame in which the shape has a size adds it.
     pub fn follow(&mut self, state: &mut EditorState, projection: &Projection, at: Pos2, ctrl: bool, widget: egui::Id) {
         let distance = state.view.navigation.distance;

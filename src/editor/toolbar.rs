@@ -187,10 +187,14 @@ fn with_step(tooltip: String, step: Option<&str>) -> String {
 fn favorite_button(ui: &mut Ui, command: Command, drawn: Option<ShapeKind>) -> Response {
     let info = command.info();
     let is_drawn = drawn.map(Command::AddShape) == Some(command);
-    let button = Button::new("").sense(egui::Sense::click_and_drag()).selected(is_drawn);
+    let button = Button::new("").sense(egui::Sense::click_and_drag());
     let response = square(ui, true, button, &format!("Add {}", info.label.to_lowercase()));
     let rect = icons::centered(response.rect, 17.0);
     let hovered = response.hovered();
+    if is_drawn {
+        let line = egui::Stroke::new(1.5, theme::ACCENT);
+        ui.painter().rect_stroke(response.rect, f32::from(theme::RADIUS), line, egui::StrokeKind::Inside);
+    }
     match info.icon {
         Some(Icon::Shape(kind)) => {
             let color = if hovered { *theme::STRONG } else { *theme::OBJECT };

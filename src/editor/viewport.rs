@@ -27,6 +27,9 @@ use super::viewport_surface::SurfaceUnderPointer;
 use super::{camera_view, grid_labels, lattice_overlay, legend, materials, pass_view, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
+/// Frames without a turn of the wheel after which it zooms again.
+const CALM_FRAMES: u8 = 4;
+
 /// The panel of the viewport.
 #[derive(Default)]
 pub struct Viewport {
@@ -37,8 +40,8 @@ pub struct Viewport {
     surface: SurfaceUnderPointer,
     ghosts: Ghosts,
     hover: Hover,
-    /// The wheel belongs to what was drawn until it rests: egui spreads its way over some frames.
-    ignores_wheel: bool,
+    /// The wheel belongs to what was drawn until it has rested for so many frames: egui spreads its way over some.
+    wheel_rests_in: u8,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
     fly_speed: FlySpeed,
@@ -193,7 +196,7 @@ impl Viewport {
         if let Some((at, ctrl)) = ui.input(|i| i.events.iter().find_map(released)) {
             drag.follow(state, projection, at, ctrl, widget);
         }
-        self.ignores_wheel = true;
+        self.wheel_rests_in = if drag.has_turned() { CALM_FRAMES } else { 0 };
     }
 
     fn context_menu(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
@@ -296,14 +299,15 @@ impl Viewport {
     }
 
     fn zoom_by_wheel(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
-        let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
-        if matches!(self.dragging, Some(Dragging::Fly | Dragging::Draw(_))) {
-            self.ignores_wheel |= matches!(self.dragging, Some(Dragging::Draw(_)));
+        let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
+        if self.wheel_rests_in > 0 {
+            self.wheel_rests_in -= u8::from(scroll == 0.0);
+            ui.ctx().request_repaint();
             return;
         }
-        let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
-        self.ignores_wheel &= scroll != 0.0;
-        if self.ignores_wheel || (scroll == 0.0 && pinch == 1.0) {
+        let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
+        let is_taken = matches!(self.dragging, Some(Dragging::Fly | Dragging::Draw(_)));
+        if is_taken || (scroll == 0.0 && pinch == 1.0) {
             return;
         }
         let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);

@@ -140,8 +140,8 @@ impl Hand<'_> {
         self.in_viewport += usize::from(notches != 0);
         self.harness.event(button(to, false));
         self.harness.event(Event::ModifiersChanged(Modifiers::NONE));
-        self.harness.run();
-        self.harness.run_steps(4);
+        // The wheel has to rest.
+        self.harness.run_steps(20);
         self.gestures += 1;
         self.in_viewport += 1;
     }
@@ -240,12 +240,17 @@ fn a_shape_drawn_on_a_wall_stands_on_it() {
     let mut hand = Hand { harness: open(scene), gestures: 0, in_viewport: 0 };
     hand.key(Modifiers::NONE, Key::P);
     hand.click("Add cylinder");
-    let [from, to] = [DVec3::new(0.2, 0.4, 0.1), DVec3::new(0.6, 0.4, 0.1)].map(|p| hand.on_screen(p));
+    let [from, to] = [DVec3::new(0.2, 0.4, 0.1), DVec3::new(1.2, 0.4, 0.1)].map(|p| hand.on_screen(p));
+    hand.harness.event(Event::PointerMoved(from));
+    hand.harness.run();
     hand.drag(from, to - from);
     let scene = hand.harness.state().document().scene();
     let node = scene.nodes().last().unwrap();
-    let NodeKind::Object(Object { shape: Shape::Cylinder { radius, height, .. }, .. }) = node.kind else { panic!() };
-    assert!((radius - 0.4).abs() < 0.051, "{radius}");
+    let NodeKind::Object(Object { shape: Shape::Cylinder { radius, height, .. }, .. }) = node.kind else {
+        panic!("{node:?}, {:?}", hand.harness.state().messages().collect::<Vec<_>>())
+    };
+    // The step of the snapping that suits this view is a meter.
+    assert_eq!(radius, 1.0);
     let place = scene.world_from_local(node.id);
     assert!((place.matrix3.y_axis - DVec3::Z).length() < 1e-3, "{place:?}");
     assert!((place.translation.z - 0.1 - 0.5 * height).abs() < 1e-3, "it touches the wall");
