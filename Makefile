@@ -35,6 +35,7 @@ window: setup ## Drive the program in a window of its own at one frame a second,
 	@bash -euo pipefail -c "$$WINDOW_TOOLS"
 	cargo build
 	tests/window.sh target/debug/isolith target/window
+	tests/pawn.sh target/debug/isolith target/window
 
 # A screen is 1280x800, 1920x1080 or 2560x1440; the pictures are in target/pictures.
 pictures: setup ## Take pictures of all panels in both themes, and of a robot built by hand, to be looked at

@@ -65,7 +65,12 @@ settle() { sleep "${1:-6}"; }
 keys() { xdotool key --delay 15 "$@"; }
 letters() { xdotool type --delay 15 "$1"; }
 click() { xdotool mousemove "$1" "$2" click 1; }
-save() { keys ctrl+s; settle; }
+# Saves, and waits until it has been saved: a busy machine has slower frames still.
+save() {
+    touch "$work/before"
+    keys ctrl+s; settle
+    for _ in $(seq 15); do [ "$scene" -nt "$work/before" ] && break; sleep 1; done
+}
 title() { xdotool getwindowname "$window"; }
 picture() { [ -z "$pictures" ] || { mkdir -p "$pictures"; import -window root "$pictures/$1.png"; }; }
 
@@ -94,12 +99,12 @@ gone() { ! exists "$1"; }
 
 # Places in the window: rows of the tree, fields of the inspector of an object, something in the picture.
 row() { echo 120 $((ROWS + 24 * $1)); }
-ROWS=180
+ROWS=145
 BODY=0 BALL=1 RING=2
-FIELD_X="850 307"
-PICTURE_CORNER="300 520"
+FIELD_X="850 305"
+PICTURE_CORNER="330 420"
 FILE_MENU="69 17"
-EMPTY_ROOM="120 450"
+EMPTY_ROOM="120 250"
 
 run() {
     fresh

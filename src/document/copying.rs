@@ -4,13 +4,14 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::links::NewLinks;
+use super::packed_copies;
 use super::placement::kept_in_place;
 use super::structure::{FreeNames, move_to, tops};
 use isolith_scene::{
     Environment, Material, MaterialId, Node, NodeId, NodeKind, ParamOwner, ParamPath, Scene, SceneError, Track,
 };
 
-/// The nodes with what is below them, their materials and their keys as a scene. They keep their place in the world if
+/// The nodes with what is below them, their materials, their keys and the packed files of their models as a scene. They keep their place in the world if
 /// a translation, rotation and scale can express it. References to other nodes are dropped.
 ///
 /// # Errors
@@ -33,6 +34,7 @@ pub fn extracted(scene: &Scene, ids: &[NodeId]) -> Result<Scene, SceneError> {
             nodes.push(node);
         }
     }
+    let packed = packed_copies::needed(&mut nodes, &scene.packed);
     let used: HashSet<MaterialId> = nodes.iter().flat_map(Node::materials).collect();
     let materials: Vec<Material> =
         scene.materials().iter().filter(|m| used.contains(&m.id)).map(|m| Material::clone(m)).collect();
@@ -44,6 +46,7 @@ pub fn extracted(scene: &Scene, ids: &[NodeId]) -> Result<Scene, SceneError> {
     };
     part.set_tracks(scene.animation.tracks().iter().filter(belongs).map(|track| Track::clone(track)))?;
     part.animation.timeline = scene.animation.timeline;
+    part.packed = packed;
     Ok(part)
 }
 
@@ -57,6 +60,7 @@ pub(super) fn merge(
 ) -> Result<Vec<NodeId>, SceneError> {
     let mut next = Scene::clone(scene);
     let [material_of, new_materials] = merge_materials(&mut next, from)?;
+    let folder = packed_copies::taken_over(&mut next, from)?;
     let mut names = FreeNames::new(scene);
     let mut links = NewLinks::new(scene);
     let first = next.next_id();
@@ -72,6 +76,7 @@ pub(super) fn merge(
             node.parent = node.parent.and_then(|id| new_id.get(&id).copied());
             node.rename_references(|id| new_id.get(&id).copied());
             node.linked = node.linked.map(|link| links.of(link));
+            packed_copies::moved_below(node, &folder, from);
             node.rename_materials(|id| material_of.get(&id).copied());
         }
         subtree[0].name = names.free(parent, &subtree[0].name);

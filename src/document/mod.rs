@@ -28,6 +28,7 @@ mod keying;
 mod keys;
 mod layout;
 mod links;
+mod packed_copies;
 mod placement;
 mod preferences;
 mod recent;
@@ -45,6 +46,7 @@ pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
 pub use layout::{Docked, DockedPart, MAX_LAYOUT_PARTS, PanelLayout};
+pub use placement::recomposed;
 pub use preferences::{
     ChangedKeys, MAX_CHANGED_KEYS, MAX_FAVORITES, PreferenceValues, Preferences, SCALES, export_keys, import_keys,
 };

@@ -27,7 +27,7 @@ pub(super) fn kept_in_place(scene: &Scene, id: NodeId, parent: Option<NodeId>) -
 
 /// The transform that equals `map` after `local`, if one exists. A linear map is a rotation after a scale exactly if
 /// its columns are orthogonal.
-fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
+pub fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
     let wanted = *map * local.to_affine();
     let translation = wanted.translation;
     let (rotation, scale) = if map.matrix3 == DMat3::IDENTITY {

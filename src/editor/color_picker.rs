@@ -162,6 +162,7 @@ pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3], mixed: bool) -> (R
     let border = if response.hovered() { theme::TEXT } else { theme::RESTING };
     ui.painter().rect(rect, f32::from(theme::RADIUS), fill, Stroke::new(1.0, border), egui::StrokeKind::Inside);
     if mixed {
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_value(theme::MIXED));
         let font = egui::TextStyle::Button.resolve(ui.style());
         ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, theme::MIXED, font, *theme::TEXT);
     }

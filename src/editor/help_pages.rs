@@ -25,7 +25,11 @@ pub const PAGES: &[HelpPage] = &[
             ("Select several", "Shift click, or drag a box with Ctrl"),
             ("Move, rotate, scale", "G, R, S; then X, Y, Z or a number; Enter keeps it, Esc takes it back"),
             ("Change sizes", "Drag the dots on a shape; with Alt both sides move"),
-            ("Snap, be precise", "Ctrl, Shift while dragging"),
+            (
+                "Draw a shape",
+                "P, choose it in the toolbar, drag; the wheel changes a bevel or an upper radius meanwhile",
+            ),
+            ("Snap, be precise", "Ctrl, Shift while dragging; the steps are in the bar at the left"),
             ("Look from a side", "1, 3, 7, with Ctrl from the other side; 5 for perspective or orthographic"),
             ("Fly", "Hold the right button: W, A, S, D, Q, E; the wheel changes the speed"),
             ("Keep a view, come back", "Shift F5 to F8, F5 to F8"),

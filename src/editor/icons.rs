@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ACCOUNT_TREE, ICON_ADJUST, ICON_ANIMATION, ICON_ARROW_SELECTOR_TOOL, ICON_DEPLOYED_CODE,
+    ICON_ACCOUNT_TREE, ICON_ADJUST, ICON_ANIMATION, ICON_ARROW_SELECTOR_TOOL, ICON_DEPLOYED_CODE, ICON_DRAW,
     ICON_FILTER_CENTER_FOCUS, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN,
     ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_MY_LOCATION, ICON_OPEN_IN_FULL,
     ICON_OPEN_WITH, ICON_PLUMBING, ICON_PUBLIC, ICON_ROTATE_RIGHT, ICON_SCREENSHOT_MONITOR, ICON_STYLUS,
@@ -64,6 +64,7 @@ pub fn tool_icon(tool: Tool) -> MaterialIcon {
         Tool::Transform(TransformKind::Move) => ICON_OPEN_WITH,
         Tool::Transform(TransformKind::Rotate) => ICON_ROTATE_RIGHT,
         Tool::Transform(TransformKind::Scale) => ICON_OPEN_IN_FULL,
+        Tool::Draw => ICON_DRAW,
     }
 }
 

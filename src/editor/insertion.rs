@@ -7,8 +7,9 @@ use glam::DVec3;
 use super::material_edits::{self, NEW, next_color, users};
 use super::state::EditorState;
 use super::{instancing, placement, selection};
-use isolith_document::Edit;
-use isolith_scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
+use isolith_document::{Edit, recomposed};
+use isolith_geometry::Transform;
+use isolith_scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind};
 
 /// Adds an object of the given kind and selects it.
 pub fn shape(state: &mut EditorState, kind: ShapeKind) {
@@ -35,14 +36,42 @@ pub fn node_above(state: &mut EditorState, node: Node, up: f64) -> Option<NodeId
     node_in_world(state, node.at(point + DVec3::Y * up))
 }
 
+/// Adds an object with a transform in world space, as part of the gesture in progress, and selects it.
+pub fn drawn(state: &mut EditorState, shape: Shape, transform: Transform) -> Option<NodeId> {
+    let name = shape.kind().label();
+    let object = Object { shape, material: material(state) };
+    node_in_world(state, Node { transform, ..Node::new(name, NodeKind::Object(object)) })
+}
+
+/// Gives an object another shape and another transform in world space, as part of the widget's gesture.
+pub fn redraw(state: &mut EditorState, widget: egui::Id, id: NodeId, shape: Shape, transform: Transform) {
+    let scene = state.session.document.scene();
+    let Some(parent) = scene.node(id).map(|node| node.parent) else { return };
+    let transform = in_parent(scene, parent, transform);
+    state.session.change(widget, &[id], |node| {
+        node.transform = transform;
+        if let NodeKind::Object(object) = &mut node.kind {
+            object.shape = shape.clone();
+        }
+    });
+}
+
+/// A transform in world space as one below a parent. What a group would shear only keeps its place.
+fn in_parent(scene: &Scene, parent: Option<NodeId>, world: Transform) -> Transform {
+    let Some(parent) = parent else { return world };
+    let parent_from_world = scene.world_from_local(parent).inverse();
+    if let Some(local) = recomposed(&parent_from_world, &world) {
+        return local;
+    }
+    let place = parent_from_world.transform_point3(world.translation);
+    Transform { translation: if place.is_finite() { place } else { DVec3::ZERO }, ..world }
+}
+
 /// Adds a node with a transform in world space, and selects it.
 pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> {
     let scene = state.session.document.scene();
     let (parent, position) = place(scene, state.session.document.selection(), &node);
-    if let Some(parent) = parent {
-        let local = scene.world_from_local(parent).inverse().transform_point3(node.transform.translation);
-        node.transform.translation = if local.is_finite() { local } else { DVec3::ZERO };
-    }
+    node.transform = in_parent(scene, parent, node.transform);
     node.name = free_name(scene, &node.name);
     let added = state.session.apply(Edit::Insert { parent, position, node }).first().copied()?;
     state.session.document.select(vec![added]);

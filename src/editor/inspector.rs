@@ -171,13 +171,14 @@ fn header(ui: &mut Ui, session: &mut EditSession, active: &Node, all: &[Arc<Node
         let ids: Vec<_> = all.iter().map(|n| n.id).collect();
         let (icon, text) = if active.visible { (ICON_VISIBILITY, "Hide") } else { (ICON_VISIBILITY_OFF, "Show") };
         let color = if active.visible { theme::WEAK } else { theme::WARNING };
-        let eye = widgets::icon_button(ui, icon, text, color);
+        let differs = |of: fn(&Node) -> bool| all.iter().any(|n| of(n) != of(active));
+        let eye = widgets::switch_button(ui, (icon, text), color, differs(|n| n.visible));
         if eye.clicked() {
             session.change(eye.id, &ids, |n| n.visible = !active.visible);
         }
         let (icon, text) = if active.locked { (ICON_LOCK, "Unlock") } else { (ICON_LOCK_OPEN, "Lock") };
         let color = if active.locked { theme::WARNING } else { theme::WEAK };
-        let lock = widgets::icon_button(ui, icon, text, color);
+        let lock = widgets::switch_button(ui, (icon, text), color, differs(|n| n.locked));
         if lock.clicked() {
             session.change(lock.id, &ids, |n| n.locked = !active.locked);
         }

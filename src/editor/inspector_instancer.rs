@@ -131,7 +131,8 @@ fn seed(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
             let (icon, name) =
                 if is_locked { (ICON_LOCK, "Unlock the seed") } else { (ICON_LOCK_OPEN, "Lock the seed") };
             let color = if is_locked { theme::WARNING } else { theme::WEAK };
-            let lock = widgets::icon_button(ui, icon, name, color);
+            let differs = |node: &Node| instancing::instancer(node).map(|instancer| instancer.seed_locked);
+            let lock = widgets::switch_button(ui, (icon, name), color, edit.common(differs).is_none());
             if lock.clicked() {
                 edit.change(lock.id, |node| {
                     if let Some(instancer) = instancing::instancer_mut(node) {

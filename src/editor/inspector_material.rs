@@ -120,7 +120,7 @@ fn picker(ui: &mut Ui, edit: &mut MultiEdit<'_>, library: &mut MaterialLibrary, 
         });
         ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("Material"));
         new = widgets::icon_button(ui, ICON_ADD, "A new material for the selection", theme::WEAK).clicked();
-        response.response.id
+        response.response.on_hover_text("The material of the selection; others may share it").id
     });
     if let Some(id) = chosen {
         edit.change(widget.inner, |node| set_material(node, id));
@@ -234,8 +234,10 @@ impl Section {
 fn editor(ui: &mut Ui, session: &mut EditSession, material: &Material) {
     ui.push_id(material.id, |ui| {
         let mut name = material.name.clone();
-        let response = widgets::row(ui, "Name", "", |ui| {
-            ui.add(TextEdit::singleline(&mut name).char_limit(MAX_NAME).desired_width(ui.available_width()))
+        let help = "The name of the material";
+        let response = widgets::row(ui, "Name", help, |ui| {
+            let field = TextEdit::singleline(&mut name).char_limit(MAX_NAME).desired_width(ui.available_width());
+            ui.add(field).on_hover_text(help)
         });
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Material name"));
         if response.changed() {

@@ -63,7 +63,7 @@ fn add(ui: &mut Ui, edit: &mut MultiEdit<'_>, library: &mut MaterialLibrary) {
         ui.label(RichText::new(text).color(theme::WEAK));
         return;
     }
-    ui.menu_button(format!("{} Add to palette", ICON_ADD.codepoint), |ui| {
+    let button = ui.menu_button(format!("{} Add to palette", ICON_ADD.codepoint), |ui| {
         widgets::scrolling(ui, widgets::list_room(&ui.ctx().clone()), |ui| {
             let materials = edit.session().document.scene().materials().to_vec();
             for material in &materials {
@@ -80,4 +80,5 @@ fn add(ui: &mut Ui, edit: &mut MultiEdit<'_>, library: &mut MaterialLibrary) {
             }
         });
     });
+    button.response.on_hover_text("Another material that copies may have");
 }

@@ -237,6 +237,7 @@ fn letters(ui: &mut Ui, field: &NumberField<'_>, text: String, mixed: bool) -> O
                 .desired_width(ui.available_width())
                 .char_limit(most_letters(&field.limits)),
         )
+        .on_hover_text(field.help)
     });
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(field.label.to_owned()));
     response.changed().then(|| (response.id, ParamChange::Whole(ParamValue::Text(text))))

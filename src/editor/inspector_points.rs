@@ -87,6 +87,7 @@ fn row(ui: &mut Ui, list: &List, index: usize, limits: &Limits) -> Option<(Id, P
         });
         let name = format!("Point {}", index + 1);
         ui.ctx().accesskit_node_builder(response.0.id, |node| node.set_label(name.clone()));
+        response.0.on_hover_text("Adds a point behind it, removes or moves it");
         for (column, title) in list.columns.iter().enumerate() {
             let label = format!("{name} {title}");
             // No unit: there is room only for the number.

@@ -65,7 +65,9 @@ fn prefixed_number(
     let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
     let mut edited = value;
     let typed = RefCell::new(None);
-    let shown = if mixed { MIXED.to_owned() } else { number_text(value / unit.one) };
+    // A third of a row has room for fewer digits.
+    let text_of = if axis.is_some() { narrow_text } else { number_text };
+    let shown = if mixed { MIXED.to_owned() } else { text_of(value / unit.one) };
     let was_canceled = canceled(ui, ui.next_auto_id());
     let parse = |text: &str| {
         if was_canceled {
@@ -83,7 +85,7 @@ fn prefixed_number(
         .max_decimals(4)
         .min_size(vec2(width, theme::ROW_HEIGHT))
         .clip_text(true)
-        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { number_text(value / unit.one) })
+        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { text_of(value / unit.one) })
         .custom_parser(parse);
     if !unit.sign.is_empty() && axis.is_none() {
         drag = drag.suffix(RichText::new(format!(" {}", unit.sign)).color(theme::WEAK));
@@ -191,6 +193,18 @@ pub fn refuse(ui: &Ui, widget: Id, reason: Option<String>) {
 /// Takes the latest refusal, to report it.
 pub fn take_refusal(ctx: &Context) -> Option<String> {
     ctx.data_mut(|d| d.remove_temp(refused()))
+}
+
+/// The number with as many decimals as a third of a row has room for; what is not 0 never becomes 0.
+fn narrow_text(value: f64) -> String {
+    const MOST: usize = 6;
+    let text = number_text(value);
+    if text.len() <= MOST {
+        return text;
+    }
+    let shorter = [1e-3, 1e-2, 0.1, 1.0].map(|step| number_text(rounded(value, step)));
+    let mut fitting = shorter.into_iter().filter(|short| short.len() <= MOST && short != "0");
+    fitting.next().unwrap_or(text)
 }
 
 /// Three numbers side by side, marked in the axes' colors. Returns the index of the changed axis.
@@ -310,6 +324,15 @@ mod tests {
             (1e6, "1000000"),
         ] {
             assert_eq!(number_text(value), text, "{value}");
+        }
+    }
+
+    #[test]
+    fn three_numbers_fit_side_by_side() {
+        for (value, text) in
+            [(58.0693, "58.069"), (-11.7198, "-11.72"), (-0.322_14, "-0.322"), (0.0592, "0.0592"), (-4e-5, "-0.00004")]
+        {
+            assert_eq!(narrow_text(value), text);
         }
     }
 

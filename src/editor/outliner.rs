@@ -157,7 +157,7 @@ impl Outliner {
                 .hint_text("Search…")
                 .desired_width(ui.available_width() - clear - 26.0)
                 .margin(egui::Margin::symmetric(8, 4));
-            let response = ui.add(field);
+            let response = ui.add(field).on_hover_text("Lists the nodes with this in their names");
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Search"));
             if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
                 self.search.clear();

@@ -130,5 +130,5 @@ pub fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: impl Into<Colo
     let text = icon.rich_text().size(14.0).color(color);
     let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
-    response
+    response.on_hover_text(name)
 }

@@ -226,8 +226,9 @@ impl Editor {
             self.state.view.add_at = None;
         }
         if let Some(command) = drag_in::follow(&mut self.state, ctx) {
+            self.state.view.is_dropping = true;
             self.run(command, ctx);
-            self.state.view.add_at = None;
+            (self.state.view.is_dropping, self.state.view.add_at) = (false, None);
         }
         below_list::show(&mut self.state, ctx);
         history_list::show(&mut self.state, ctx);

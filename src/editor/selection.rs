@@ -101,7 +101,16 @@ pub fn delete(session: &mut EditSession) {
 /// Makes the selection the operands of `operator`. A single selected group only changes its operator,
 /// unless `new` asks for another group.
 pub fn join(session: &mut EditSession, operator: Operator, new: bool) {
-    let ids = roots(session);
+    let mut ids = roots(session);
+    if !new {
+        // With everything selected, lights and cameras stay where they are: they are no operands.
+        let scene = session.document.scene();
+        let is_operand = |id: &NodeId| {
+            scene.node(*id).is_some_and(|node| !matches!(node.kind, NodeKind::Light(_) | NodeKind::Camera(_)))
+        };
+        let operands: Vec<NodeId> = ids.iter().copied().filter(is_operand).collect();
+        ids = if operands.is_empty() { ids } else { operands };
+    }
     if refuse_locked(session, &ids, "joined with others") {
         return;
     }

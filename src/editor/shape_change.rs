@@ -9,13 +9,18 @@ use isolith_scene::{Degrees, ParamValue, Shape, ShapeKind, Sides};
 /// the result has the kind's defaults.
 pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
     let bounds = from.bounds();
-    let half = bounds.half().max(DVec3::splat(1e-3));
     if from.kind() == kind || !bounds.is_finite() {
         return if from.kind() == kind { from.clone() } else { kind.default_shape() };
     }
-    let room = Room::new(&bounds, half);
+    let half = bounds.half().max(DVec3::splat(1e-3));
+    filling(kind, &Aabb::from_center_half(bounds.center(), half))
+}
+
+/// A shape of the given kind that fills finite bounds, as far as its kind allows.
+pub fn filling(kind: ShapeKind, bounds: &Aabb) -> Shape {
+    let room = Room::new(bounds, bounds.half());
     let other = || if kind.has_data() { room.drawn(kind) } else { kind.default_shape() };
-    rounded(room.simple(kind).or_else(|| room.cut(kind)).unwrap_or_else(other))
+    tidied(room.simple(kind).or_else(|| room.cut(kind)).unwrap_or_else(other))
 }
 
 /// The bounds of a shape and derived sizes of other shapes.
@@ -118,7 +123,7 @@ impl Room {
 }
 
 /// Rounds every number to a micrometer, for tidy values in the inspector.
-fn rounded(mut shape: Shape) -> Shape {
+pub fn tidied(mut shape: Shape) -> Shape {
     use ParamValue::{List, Scalar, Vector};
     let tidy = |v: f64| (v * 1e6).round() / 1e6;
     for (index, value) in shape.values().into_iter().enumerate() {

@@ -140,6 +140,7 @@ fn add<S: SlotList>(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         return;
     }
     let opener = ui.button(format!("{} Add {name}", ICON_ADD.codepoint));
+    let opener = opener.on_hover_text(format!("Another {name}, by its name; they apply from top to bottom"));
     let popup = Popup::menu(&opener).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     popup.show(|ui| {
         let chosen = search::<S>(ui, opener.clicked());

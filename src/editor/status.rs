@@ -10,7 +10,7 @@ use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::transforms::kinds::{Tool, TransformKind};
 use super::view_state::{Picture, PointerActivity};
-use super::{instancing, theme};
+use super::{drawing, instancing, theme};
 use isolith_geometry::Camera;
 use isolith_jobs::Task;
 use isolith_scene::NodeId;
@@ -197,6 +197,11 @@ fn hint_of(state: &EditorState, ctx: &Context) -> String {
             "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
         }
         PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Drawing => format!(
+            "Drag: draw, here {} · Wheel or arrows while drawing: {} · Ctrl: snap · Toolbar, Shift A: another shape · Alt drag: orbit",
+            state.view.drawn.label().to_lowercase(),
+            drawing::detail_name(state.view.drawn).unwrap_or("nothing more"),
+        ),
         PointerActivity::Lassoing => "Draw a line around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Boxing => "Drag a box around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),

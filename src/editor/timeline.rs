@@ -159,6 +159,7 @@ fn ruler(state: &mut EditorState, ui: &mut Ui, scale: &TimeScale, rect: Rect) {
     let lane = Rect::from_x_y_ranges(scale.lane, rect.y_range());
     let response = ui.interact(lane, ui.scope_id().with("ruler"), Sense::CLICK | Sense::DRAG);
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Ruler"));
+    let response = response.on_hover_text("The moment that is shown: click or drag");
     let painter = ui.painter().with_clip_rect(lane);
     painter.rect_filled(lane, 3.0, theme::BAR);
     let played = scale.x_of(timeline.start)..=scale.x_of(timeline.end);

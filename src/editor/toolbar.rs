@@ -10,8 +10,8 @@ use super::commands::info::{Icon, Menu};
 use super::intent::Intent;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry, Request};
-use super::{drag_in, icons, theme, widgets};
-use isolith_scene::Operator;
+use super::{drag_in, drawing, icons, theme, widgets};
+use isolith_scene::{Operator, ShapeKind};
 
 /// The panel of the toolbar.
 pub struct Toolbar;
@@ -36,12 +36,13 @@ impl Panel for Toolbar {
 }
 
 /// Submenus of View.
-const SUBMENUS: [(&str, Menu); 6] = [
+const SUBMENUS: [(&str, Menu); 7] = [
     ("Split view", Menu::Split),
     ("Bookmarks", Menu::Bookmarks),
     ("Transform", Menu::Tool),
     ("Orientation", Menu::Orientation),
     ("Pivot", Menu::Pivot),
+    ("Snapping", Menu::Snap),
     ("Keymap", Menu::Keymap),
 ];
 
@@ -67,7 +68,7 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
         buttons(state, ui, theme::TEXT, &[Command::Undo, Command::Redo], &mut chosen);
         divider(ui);
         for command in favorites(state) {
-            let button = favorite_button(ui, command);
+            let button = favorite_button(ui, command, drawing::chooses_shape(state).then_some(state.view.drawn));
             drag_in::begin(state, &button, command);
             if button.clicked() {
                 chosen = Some(command);
@@ -182,13 +183,18 @@ fn with_step(tooltip: String, step: Option<&str>) -> String {
     step.map_or(tooltip.clone(), |step| format!("{tooltip}: {step}"))
 }
 
-/// A button that adds a favorite.
-fn favorite_button(ui: &mut Ui, command: Command) -> Response {
+/// A button that adds a favorite, or chooses it for the draw tool, which draws `drawn` now.
+fn favorite_button(ui: &mut Ui, command: Command, drawn: Option<ShapeKind>) -> Response {
     let info = command.info();
+    let is_drawn = drawn.map(Command::AddShape) == Some(command);
     let button = Button::new("").sense(egui::Sense::click_and_drag());
     let response = square(ui, true, button, &format!("Add {}", info.label.to_lowercase()));
     let rect = icons::centered(response.rect, 17.0);
     let hovered = response.hovered();
+    if is_drawn {
+        let line = egui::Stroke::new(1.5, theme::ACCENT);
+        ui.painter().rect_stroke(response.rect, f32::from(theme::RADIUS), line, egui::StrokeKind::Inside);
+    }
     match info.icon {
         Some(Icon::Shape(kind)) => {
             let color = if hovered { *theme::STRONG } else { *theme::OBJECT };
@@ -200,7 +206,9 @@ fn favorite_button(ui: &mut Ui, command: Command) -> Response {
         }
         None => {}
     }
-    response.on_hover_text(format!("Add: {}\n{}\nDrag it into the viewport to choose the place", info.label, info.help))
+    let does = if drawn.is_some() { "Draw" } else { "Add" };
+    let help = format!("{does}: {}\n{}\nDrag it into the viewport to choose the place", info.label, info.help);
+    response.on_hover_text(help)
 }
 
 /// Maximum number of characters of a file's name in a menu.

@@ -5,12 +5,13 @@ use egui::{Event, Pos2, Rect, TextureId, vec2};
 use super::choice_walk::{BelowList, Walk};
 use super::commands::command::Command;
 use super::navigation::Navigation;
+use super::snapping::SnapSettings;
 use super::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 use super::transforms::starts::LastMotion;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
-use isolith_scene::NodeId;
+use isolith_scene::{NodeId, ShapeKind};
 
 /// The output of the renderer.
 #[derive(Clone, Debug, Default)]
@@ -111,6 +112,8 @@ pub enum PointerActivity {
     Boxing,
     /// Draws a line around what is to be selected.
     Lassoing,
+    /// Draws a new shape, or is about to.
+    Drawing,
 }
 
 /// The view of the document.
@@ -143,6 +146,10 @@ pub struct ViewState {
     pub orientation: Orientation,
     /// The point around which it turns and scales.
     pub pivot: PivotPoint,
+    /// How drags snap.
+    pub snap: SnapSettings,
+    /// The shape that the draw tool draws.
+    pub drawn: ShapeKind,
     /// The last transform, to be repeated.
     pub last_motion: Option<LastMotion>,
     /// The transform that follows the pointer and takes all keys.
@@ -151,6 +158,8 @@ pub struct ViewState {
     pub add_at: Option<Pos2>,
     /// What is dragged from a palette into the picture.
     pub dragging_in: Option<Command>,
+    /// It is dropped there in this frame.
+    pub is_dropping: bool,
     /// The group in which clicks select; `None` for the whole scene.
     pub entered: Option<NodeId>,
     /// The clicks at one place so far.
@@ -198,10 +207,13 @@ impl Default for ViewState {
             tool: Tool::Transform(TransformKind::Move),
             orientation: Orientation::World,
             pivot: PivotPoint::Median,
+            snap: SnapSettings::default(),
+            drawn: ShapeKind::Box,
             last_motion: None,
             transforming: None,
             add_at: None,
             dragging_in: None,
+            is_dropping: false,
             entered: None,
             walk: None,
             below: None,

@@ -1,9 +1,10 @@
 //! The viewport: the picture and the pointer actions in it, which are navigating, picking and moving.
 
-use egui::{Color32, Key, Pos2, Rect, Response, Sense, Ui, pos2};
+use egui::{Color32, Event, Key, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
 use super::commands::entries::viewport_entries;
+use super::drawing::{self, DrawDrag};
 use super::fly::{self, FlySpeed};
 use super::ghosts::Ghosts;
 use super::handles::handle_paint;
@@ -14,6 +15,7 @@ use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
 use super::projection::Projection;
 use super::state::{EditorState, Request};
+use super::transforms::kinds::Tool;
 use super::transforms::transform_bar;
 use super::transforms::transform_drag::Following;
 use super::view_slots::SIDES;
@@ -25,6 +27,9 @@ use super::viewport_surface::SurfaceUnderPointer;
 use super::{camera_view, grid_labels, lattice_overlay, legend, materials, pass_view, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
+/// Frames without a turn of the wheel after which it zooms again.
+const CALM_FRAMES: u8 = 4;
+
 /// The panel of the viewport.
 #[derive(Default)]
 pub struct Viewport {
@@ -35,6 +40,8 @@ pub struct Viewport {
     surface: SurfaceUnderPointer,
     ghosts: Ghosts,
     hover: Hover,
+    /// The wheel belongs to what was drawn until it has rested for so many frames: egui spreads its way over some.
+    wheel_rests_in: u8,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
     fly_speed: FlySpeed,
@@ -117,8 +124,12 @@ impl Viewport {
             Some(Dragging::Shape(_)) => PointerActivity::Shaping,
             Some(Dragging::Box(_)) => PointerActivity::Boxing,
             Some(Dragging::Lasso(_)) => PointerActivity::Lassoing,
+            Some(Dragging::Draw(_)) => PointerActivity::Drawing,
             None if state.view.wants_box => PointerActivity::Boxing,
             None if state.view.wants_lasso => PointerActivity::Lassoing,
+            None if response.hovered() && state.view.tool == Tool::Draw => {
+                over_handle().unwrap_or(PointerActivity::Drawing)
+            }
             None if response.hovered() => over_handle().unwrap_or(PointerActivity::Hovering),
             None => PointerActivity::Away,
         }
@@ -151,6 +162,7 @@ impl Viewport {
                 Some(Dragging::Transform(drag)) => {
                     state.view.last_motion = drag.last_motion().or(state.view.last_motion);
                 }
+                Some(Dragging::Draw(drag)) => self.finish_drawing(state, ui, &projection, (*drag, response.id)),
                 _ => {}
             }
         }
@@ -166,6 +178,25 @@ impl Viewport {
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || self.modal.is_active() || now < self.zooming_until;
         state.view.pointer = self.activity(state, ui, response);
+    }
+
+    /// A slow frame may hold the last of the way and of the wheel beside the release.
+    fn finish_drawing(
+        &mut self,
+        state: &mut EditorState,
+        ui: &Ui,
+        projection: &Projection,
+        (mut drag, widget): (DrawDrag, egui::Id),
+    ) {
+        let released = |event: &Event| match event {
+            Event::PointerButton { pos, pressed: false, modifiers, .. } => Some((*pos, modifiers.command)),
+            _ => None,
+        };
+        drag.turn(ui);
+        if let Some((at, ctrl)) = ui.input(|i| i.events.iter().find_map(released)) {
+            drag.follow(state, projection, at, ctrl, widget);
+        }
+        self.wheel_rests_in = if drag.has_turned() { CALM_FRAMES } else { 0 };
     }
 
     fn context_menu(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
@@ -218,7 +249,9 @@ impl Viewport {
                     self.dragging = None;
                 }
             }
-            Some(Dragging::Transform(_) | Dragging::Shape(_)) => self.follow_change(state, ui, response, &projection),
+            Some(Dragging::Transform(_) | Dragging::Shape(_) | Dragging::Draw(_)) => {
+                self.follow_change(state, ui, response, &projection)
+            }
         }
     }
 
@@ -233,7 +266,8 @@ impl Viewport {
         let Some(pointer) = response.interact_pointer_pos() else { return };
         let view = &state.view.navigation;
         let forward = view.rotation * DVec3::NEG_Z;
-        let snap = if modifiers.command { steps::snap_step(view.distance) } else { 0.0 };
+        let snap = state.view.snap.length_step(modifiers.command, view.distance);
+        let angle_snap = state.view.snap.angle_step(modifiers.command);
         let ray = projection.ray(pointer);
         match &mut self.dragging {
             Some(Dragging::Transform(drag)) => {
@@ -241,7 +275,7 @@ impl Viewport {
                     drag.surface = drag.surface.next();
                 }
                 let surface = self.surface.find(state, projection, pointer, drag);
-                let following = Following { precise: modifiers.shift, snap, surface };
+                let following = Following { precise: modifiers.shift, snap, angle_snap, surface };
                 drag.follow(projection, state.view.navigation.rotation, pointer, following);
                 drag.apply(&mut state.session, response.id);
             }
@@ -249,24 +283,31 @@ impl Viewport {
                 let pace = Pace {
                     precise: modifiers.shift,
                     snap,
-                    angle_snap: if modifiers.command { steps::ANGLE_STEP } else { 0.0 },
+                    angle_snap,
                     both: modifiers.alt,
                     finest: steps::finest_step(projection.meters_per_point(view.target)),
                 };
                 drag.follow(&ray, forward, pace);
                 drag.apply(&mut state.session, response.id);
             }
+            Some(Dragging::Draw(drag)) => {
+                drag.turn(ui);
+                drag.follow(state, projection, pointer, modifiers.command, response.id);
+            }
             _ => {}
         }
     }
 
     fn zoom_by_wheel(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
-        let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
-        if matches!(self.dragging, Some(Dragging::Fly)) {
+        let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
+        if self.wheel_rests_in > 0 {
+            self.wheel_rests_in -= u8::from(scroll == 0.0);
+            ui.ctx().request_repaint();
             return;
         }
-        let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
-        if scroll == 0.0 && pinch == 1.0 {
+        let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
+        let is_taken = matches!(self.dragging, Some(Dragging::Fly | Dragging::Draw(_)));
+        if is_taken || (scroll == 0.0 && pinch == 1.0) {
             return;
         }
         let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
@@ -275,6 +316,14 @@ impl Viewport {
         const STILL_AFTER: f64 = 0.2;
         self.zooming_until = now + STILL_AFTER;
         ui.ctx().request_repaint_after_secs(STILL_AFTER as f32);
+    }
+
+    /// The shape that is being drawn.
+    fn drawn(&self) -> Option<&DrawDrag> {
+        match &self.dragging {
+            Some(Dragging::Draw(drag)) => Some(drag),
+            _ => None,
+        }
     }
 
     /// Paints the gizmo and the handles, or the transform in progress instead of them.
@@ -291,6 +340,7 @@ impl Viewport {
         if let Some(drag) = transform {
             paint_limits(&painter, projection, drag);
         }
+        drawing::paint(state, ui, &painter, projection, self.drawn(), pointer);
         if let Some(gizmo) = gizmo_of(state, projection) {
             let hovered = pointer.and_then(|p| gizmo.handle_at(p)).filter(|_| self.dragging.is_none());
             gizmo.paint(&painter, transform.map(|drag| drag.constraint).or(hovered));

@@ -3,6 +3,7 @@
 use egui::{PointerButton, Pos2, Response, Ui};
 use glam::DVec3;
 
+use super::drawing::DrawDrag;
 use super::gizmo::Gizmo;
 use super::handles::value_drag::ValueDrag;
 use super::handles::value_handle::{HandleKey, HandleSet};
@@ -27,6 +28,8 @@ pub enum Dragging {
     Transform(Box<TransformDrag>),
     /// Changes the selected shape by a handle.
     Shape(Box<ValueDrag>),
+    /// Draws a new shape.
+    Draw(Box<DrawDrag>),
     /// Draws a box from here to there; what is in it is selected at the end.
     Box([Pos2; 2]),
     /// Draws a line around what is selected at the end.
@@ -83,6 +86,10 @@ pub fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection:
     if let Some(shaping) = start_shaping(state, projection, origin).filter(|_| !modifiers.alt) {
         return Some(shaping);
     }
+    if state.view.tool == Tool::Draw && !modifiers.alt && !modifiers.shift {
+        return DrawDrag::begin(state, projection, origin, modifiers.command)
+            .map(|drag| Dragging::Draw(Box::new(drag)));
+    }
     let handle = gizmo_of(state, projection).and_then(|gizmo| gizmo.handle_at(origin)).filter(|_| !modifiers.alt);
     let transforming = handle.zip(transform_kind(state)).and_then(|(constraint, kind)| {
         let axes = (state.view.orientation, state.view.navigation.rotation, state.view.pivot);
@@ -100,6 +107,6 @@ pub fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection:
 fn transform_kind(state: &EditorState) -> Option<TransformKind> {
     match state.view.tool {
         Tool::Transform(kind) => Some(kind),
-        Tool::Select => None,
+        Tool::Select | Tool::Draw => None,
     }
 }

@@ -10,7 +10,7 @@ use super::transforms::kinds::{Constraint, TransformKind};
 use super::transforms::modal::{ModalStep, take_keys};
 use super::transforms::transform_drag::{Following, TransformDrag};
 use super::viewport_surface::{SurfaceUnderPointer, with_bounds};
-use super::{selection, steps, theme};
+use super::{selection, theme};
 
 /// The transform in progress.
 #[derive(Default)]
@@ -67,9 +67,10 @@ impl ModalTransform {
                 let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
                 let modifiers = ui.input(|i| i.modifiers);
                 let view = &state.view.navigation;
-                let snap = if modifiers.command { steps::snap_step(view.distance) } else { 0.0 };
+                let snap = state.view.snap.length_step(modifiers.command, view.distance);
+                let angle_snap = state.view.snap.angle_step(modifiers.command);
                 let surface = self.surface.find(state, &projection, pointer, drag);
-                let following = Following { precise: modifiers.shift, snap, surface };
+                let following = Following { precise: modifiers.shift, snap, angle_snap, surface };
                 drag.follow(&projection, view.rotation, pointer, following);
                 drag.apply(&mut state.session, widget);
                 state.view.last_motion = drag.last_motion().or(state.view.last_motion);

@@ -27,9 +27,25 @@ pub fn row<R>(ui: &mut Ui, label: &str, help: &str, add: impl FnOnce(&mut Ui) ->
                 response.on_hover_text(help);
             }
         });
-        add(ui)
+        ui.data_mut(|d| d.insert_temp(row_help(), help.to_owned()));
+        let result = add(ui);
+        ui.data_mut(|d| d.remove_temp::<String>(row_help()));
+        result
     };
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| ui.horizontal(horizontal).inner).inner
+}
+
+/// Key of the help text of the row that is being shown, for its widgets.
+fn row_help() -> Id {
+    Id::unique("help of the row")
+}
+
+/// The response with the help text of its row as a tooltip.
+pub fn helped(ui: &Ui, response: Response) -> Response {
+    match ui.data(|d| d.get_temp::<String>(row_help())) {
+        Some(help) if !help.is_empty() => response.on_hover_text(help),
+        _ => response,
+    }
 }
 
 /// A card with a title.
@@ -58,7 +74,7 @@ pub fn color(ui: &mut Ui, name: &str, linear: [f64; 3], mixed: bool) -> (Id, Opt
     let mut shown = linear.map(|v| (v / peak) as f32);
     let before = shown;
     let (response, picked) = color_picker::button(ui, name, &mut shown, mixed);
-    let id = response.id;
+    let id = helped(ui, response).id;
     let changed = picked && shown != before;
     // Channels unchanged by the picker keep their full precision.
     let mut value = linear;
@@ -96,7 +112,7 @@ pub fn choice<T: Copy + PartialEq>(
         }
     });
     ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label(name.to_owned()));
-    (response.response.id, chosen)
+    (helped(ui, response.response).id, chosen)
 }
 
 /// A frameless button with an icon.
@@ -109,7 +125,26 @@ pub fn icon_button(
     let text = icon.rich_text().size(theme::ICON_SIZE).color(color);
     let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
-    response.on_hover_text(name)
+    response.on_hover_text(name).on_disabled_hover_text(name)
+}
+
+/// The same as a switch of several nodes: a dash stands in place of the icon if they differ.
+pub fn switch_button(
+    ui: &mut Ui,
+    (icon, name): (egui_material_icons::MaterialIcon, &str),
+    color: impl Into<Color32>,
+    mixed: bool,
+) -> Response {
+    if !mixed {
+        return icon_button(ui, icon, name, color);
+    }
+    let text = RichText::new(MIXED).strong().color(theme::TEXT);
+    let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_label(name.to_owned());
+        node.set_toggled(egui::accesskit::Toggled::Mixed);
+    });
+    response.on_hover_text(format!("{name}: now they differ"))
 }
 
 /// A line of text that takes effect at the end of typing: on Enter, Tab or a click elsewhere, not on Escape.
@@ -181,7 +216,7 @@ pub fn fixed<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
 pub fn search(ui: &mut Ui, text: &mut String, (hint, label): (&str, &str), takes_focus: bool) -> Response {
     let field =
         TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).margin(egui::Margin::symmetric(8, 6));
-    let response = ui.add(field);
+    let response = ui.add(field).on_hover_text(format!("{label}: part of a name"));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label));
     if takes_focus {
         response.request_focus();

@@ -30,6 +30,9 @@ pub enum SceneError {
         /// The limit.
         limit: usize,
     },
+    /// Files cannot be packed into the scene.
+    #[error("the packed file {0}")]
+    Packed(String),
     /// A node with this id exists already.
     #[error("node {0} is in the scene already")]
     DuplicateNode(NodeId),

@@ -198,6 +198,12 @@ pub enum Command {
     UseOrientation(Orientation),
     /// Switch to this pivot.
     UsePivot(PivotPoint),
+    /// Let drags snap without Ctrl, or only with it.
+    ToggleSnap,
+    /// Let lengths snap to the step of this index, or to one that suits the view.
+    SnapLengths(Option<usize>),
+    /// Let angles snap to the step of this index.
+    SnapAngles(usize),
     /// Switch to this keymap.
     UseKeymap(Keymap),
     /// Switch to this shading.

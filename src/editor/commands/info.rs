@@ -49,6 +49,8 @@ pub enum Menu {
     Orientation,
     /// Pivots of the tools; a submenu of View.
     Pivot,
+    /// How drags snap; a submenu of View.
+    Snap,
     /// Keymaps; a submenu of View.
     Keymap,
     /// What explains the program.
@@ -172,10 +174,19 @@ impl CommandInfo {
 
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
-        use Menu::{Debug, Keymap, Orientation, Pivot, Samples, Shading, Tool};
+        use Menu::{Debug, Keymap, Orientation, Pivot, Samples, Shading, Snap, Tool};
         match (self.menu, on) {
-            (Shading | Debug | Samples | Tool | Orientation | Pivot | Keymap, true) => ICON_RADIO_BUTTON_CHECKED,
-            (Shading | Debug | Samples | Tool | Orientation | Pivot | Keymap, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (Snap, _) if self.command == Command::ToggleSnap => {
+                if on {
+                    ICON_CHECK_BOX
+                } else {
+                    ICON_CHECK_BOX_OUTLINE_BLANK
+                }
+            }
+            (Shading | Debug | Samples | Snap | Tool | Orientation | Pivot | Keymap, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Shading | Debug | Samples | Snap | Tool | Orientation | Pivot | Keymap, false) => {
+                ICON_RADIO_BUTTON_UNCHECKED
+            }
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

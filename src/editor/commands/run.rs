@@ -11,10 +11,11 @@ use crate::help::HelpTab;
 use crate::intent::Intent;
 use crate::log_panel::LOG;
 use crate::root::Editor;
+use crate::snapping::{ANGLES, LENGTHS};
 use crate::state::{EditorState, Request};
 use crate::{
-    arrange, camera_view, clipboard, dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion,
-    pass_view, relations, seeds, selection,
+    arrange, camera_view, clipboard, dope_sheet, drawing, insertion, instancer_edits, keying, material_edits,
+    mesh_conversion, pass_view, relations, seeds, selection,
 };
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operation, Operator};
@@ -116,6 +117,7 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ToggleLock => selection::toggle_locked(session),
         Command::MakeMaterialUnique => make_material_unique(session),
         Command::RemoveUnusedMaterials => remove_unused_materials(session),
+        Command::AddShape(kind) if drawing::chooses_shape(state) => state.view.drawn = kind,
         Command::AddShape(kind) => insertion::shape(state, kind),
         Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
         Command::AddInstancer => instancer_edits::add(state),
@@ -147,6 +149,9 @@ fn run_on_view(state: &mut EditorState, command: Command) {
         Command::UseTool(tool) => state.view.tool = tool,
         Command::UseOrientation(orientation) => state.view.orientation = orientation,
         Command::UsePivot(pivot) => state.view.pivot = pivot,
+        Command::ToggleSnap => state.view.snap.is_on ^= true,
+        Command::SnapLengths(index) => state.view.snap.length = index.map(|index| LENGTHS[index]),
+        Command::SnapAngles(index) => state.view.snap.angle = ANGLES[index],
         Command::UseKeymap(keymap) => state.use_keymap(keymap),
         Command::ShowShading(shading) => state.view.show_shading(shading),
         Command::CycleShading => state.view.cycle_shading(),

@@ -7,6 +7,8 @@ use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::icons::{orientation_icon, pivot_icon, tool_icon};
 use crate::keymap::Keymap;
+use crate::numbers::number_text;
+use crate::snapping::{ANGLES, LENGTHS};
 use crate::state::EditorState;
 use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 
@@ -30,7 +32,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         transform(TransformKind::Rotate, Key::R, "Around the pivot; then X, Y, Z or degrees; Enter ends it"),
         transform(TransformKind::Scale, Key::S, "From the pivot; then X, Y, Z or a factor; Enter ends it"),
     ];
-    let keys = [Key::Q, Key::W, Key::E, Key::R];
+    let keys = [Key::Q, Key::W, Key::E, Key::R, Key::P];
     all.extend(Tool::ALL.into_iter().zip(keys).map(|(tool, key)| {
         let info = CommandInfo::new(
             Menu::Tool,
@@ -40,8 +42,8 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             tool.help(),
         )
         .switch(|state, command| command == Command::UseTool(state.view.tool))
-        .key(NONE, key)
-        .only_in(Keymap::Industry);
+        .key(NONE, key);
+        let info = if tool == Tool::Draw { info } else { info.only_in(Keymap::Industry) };
         if tool == Tool::Select { info.group() } else { info }
     }));
     all.extend(Orientation::ALL.into_iter().map(|orientation| {
@@ -56,6 +58,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         CommandInfo::new(Menu::Pivot, Command::UsePivot(pivot), icon, label, pivot.help())
             .switch(|state, command| command == Command::UsePivot(state.view.pivot))
     }));
+    all.extend(snapping());
     all.extend(Keymap::ALL.into_iter().map(|keymap| {
         let label = format!("Keymap: {}", keymap.label());
         CommandInfo::new(Menu::Keymap, Command::UseKeymap(keymap), None, label, keymap.help())
@@ -68,4 +71,30 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .group(),
     );
     all
+}
+
+/// Whether drags snap, and to which steps.
+fn snapping() -> Vec<CommandInfo> {
+    let always = "Drags snap without Ctrl; Ctrl then lets them run free";
+    let lengths = "Moves, sizes and what is drawn snap to multiples of it";
+    let angles = "Rotations and angles snap to multiples of it";
+    let snap = |command, label, help| CommandInfo::new(Menu::Snap, command, None, label, help);
+    let mut all = vec![
+        CommandInfo::new(Menu::Snap, Command::ToggleSnap, None, "Snap always", always).key(Modifiers::SHIFT, Key::S),
+        snap(Command::SnapLengths(None), "Snap lengths: by the view".to_owned(), "A step that suits the distance")
+            .group(),
+    ];
+    all.extend(LENGTHS.iter().enumerate().map(|(index, step)| {
+        snap(Command::SnapLengths(Some(index)), format!("Snap lengths: {} m", number_text(*step)), lengths)
+    }));
+    all.extend(ANGLES.iter().enumerate().map(|(index, step)| {
+        let info = snap(Command::SnapAngles(index), format!("Snap angles: {}°", number_text(*step)), angles);
+        if index == 0 { info.group() } else { info }
+    }));
+    let is_on = |state: &EditorState, command: Command| match command {
+        Command::SnapLengths(index) => state.view.snap.length == index.map(|index| LENGTHS[index]),
+        Command::SnapAngles(index) => state.view.snap.angle == ANGLES[index],
+        _ => state.view.snap.is_on,
+    };
+    all.into_iter().map(|info| info.switch(is_on)).collect()
 }

@@ -12,6 +12,7 @@ use crate::bounds;
 use crate::projection::Projection;
 use crate::selection::holder_of_lock;
 use crate::state::EditorState;
+use crate::transforms::kinds::Tool;
 use isolith_geometry::Aabb;
 use isolith_scene::{
     List, Node, NodeId, NodeKind, Param, ParamPath, ParamValue, Part, RadiusUnit, Shape, profile_curve, tube_curve,
@@ -100,6 +101,10 @@ impl HandleSet {
         let scene = state.session.document.scene();
         let [id] = state.session.document.selection() else { return None };
         let node = scene.node(*id).filter(|node| node.visible && holder_of_lock(scene, node.id).is_none())?;
+        // The next shape often begins where the last one has its handles.
+        if state.view.tool == Tool::Draw && matches!(node.kind, NodeKind::Object(_)) {
+            return None;
+        }
         let world_from_local = scene.world_from_local(*id);
         if !world_from_local.is_finite() || world_from_local.matrix3.determinant() == 0.0 {
             return None;

@@ -42,15 +42,18 @@ pub enum Tool {
     Select,
     /// It moves, rotates or scales.
     Transform(TransformKind),
+    /// There is none: a drag draws a new shape.
+    Draw,
 }
 
 impl Tool {
     /// Every tool, in the order of the bar.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Select,
         Self::Transform(TransformKind::Move),
         Self::Transform(TransformKind::Rotate),
         Self::Transform(TransformKind::Scale),
+        Self::Draw,
     ];
 
     /// Display name.
@@ -60,6 +63,7 @@ impl Tool {
             Self::Transform(TransformKind::Move) => "Move tool",
             Self::Transform(TransformKind::Rotate) => "Rotate tool",
             Self::Transform(TransformKind::Scale) => "Scale tool",
+            Self::Draw => "Draw tool",
         }
     }
 
@@ -70,6 +74,7 @@ impl Tool {
             Self::Transform(TransformKind::Move) => "Arrows along the axes, squares in their planes",
             Self::Transform(TransformKind::Rotate) => "Rings around the axes, and one around the view",
             Self::Transform(TransformKind::Scale) => "Cubes along the axes; the one in the middle for all",
+            Self::Draw => "A drag draws a shape: from a side its outline, else its size on the ground or on a surface",
         }
     }
 }

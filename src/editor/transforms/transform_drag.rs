@@ -10,7 +10,7 @@ use super::typed::Typed;
 use crate::edit_session::EditSession;
 use crate::numbers::number_text;
 use crate::projection::Projection;
-use crate::steps::{ANGLE_STEP, finest_step, rounded};
+use crate::steps::{finest_step, rounded};
 use isolith_geometry::{Aabb, Ray};
 use isolith_scene::NodeId;
 
@@ -19,8 +19,10 @@ use isolith_scene::NodeId;
 pub struct Following {
     /// A tenth as far.
     pub precise: bool,
-    /// The step of lengths in meters; 0 for none, and then angles and factors have none either.
+    /// The step of lengths in meters; 0 for none, and then factors have none either.
     pub snap: f64,
+    /// The step of angles in degrees; 0 for none.
+    pub angle_snap: f64,
     /// The surface under the pointer, with its normal, while the move snaps to it.
     pub surface: Option<[DVec3; 2]>,
 }
@@ -163,7 +165,7 @@ impl TransformDrag {
         let surface = following.surface.filter(|_| self.kind == TransformKind::Move);
         let motion = match (self.typed.is_empty(), surface) {
             (true, Some(on)) => self.standing.motion(self.pivot(), on, self.surface, self.finest),
-            (true, None) => self.pointed(projection, view, following.snap),
+            (true, None) => self.pointed(projection, view, following),
             (false, _) => self.as_typed(view),
         };
         self.motion = motion.unwrap_or(self.motion);
@@ -217,7 +219,8 @@ impl TransformDrag {
         })
     }
 
-    fn pointed(&self, projection: &Projection, view: DQuat, snap: f64) -> Option<SelectionMotion> {
+    fn pointed(&self, projection: &Projection, view: DQuat, following: Following) -> Option<SelectionMotion> {
+        let Following { snap, angle_snap, .. } = following;
         let snaps = snap > 0.0;
         match self.kind {
             TransformKind::Move => {
@@ -240,7 +243,7 @@ impl TransformDrag {
             TransformKind::Rotate => {
                 let axis = self.turn_axis(view);
                 let side = if axis.dot(view * DVec3::Z) < 0.0 { -1.0 } else { 1.0 };
-                let angle = rounded(self.angle * side, if snaps { ANGLE_STEP } else { FINEST_ANGLE });
+                let angle = rounded(self.angle * side, if angle_snap > 0.0 { angle_snap } else { FINEST_ANGLE });
                 Some(SelectionMotion::Turn(axis, angle))
             }
             TransformKind::Scale => {
