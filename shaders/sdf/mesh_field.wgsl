@@ -21,62 +21,50 @@ const TOLD_COARSER: f32 = 1e9;
 const LEVEL_ROWS: u32 = 3u;
 
 fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let levels = u32(scene_row(data + 1u).x);
+    let head = scene_row(data + 1u);
+    let levels = u32(head.x);
+    var row = data + 4u;
     var sum = 0.0;
     var rest = 1.0;
     // Of the first level that tells anything.
     var sign = 0.0;
-    // What the next level that tells anything has told, and the level behind it.
-    var found = vec3f(0.0);
-    var told = 0u;
     for (var level = 0u; level < levels; level += 1u) {
-        let row = data + 4u + LEVEL_ROWS * level;
-        if told <= level {
-            found = mesh_field_told(p, data, level, levels);
-            told = u32(found.z);
+        let found = mesh_field_level(p, row, head.y);
+        row += LEVEL_ROWS;
+        if found.y == TOLD_COARSER {
+            continue;
         }
         if sign == 0.0 {
             sign = select(1.0, -1.0, found.y < 0.0);
         }
-        let distance = abs(found.y);
-        let scaled = distance * scene_row(row + 2u).y;
-        let fade = clamp((distance / scene_row(row).w - FADE_START) * (1.0 / (FADE_END - FADE_START)), 0.0, 1.0);
+        let fade = clamp((abs(found.y) - FADE_START) * (1.0 / (FADE_END - FADE_START)), 0.0, 1.0);
         let share = select(fade, 0.0, level + 1u == levels);
-        sum += rest * (1.0 - share) * sqrt(found.x + scaled * scaled);
+        sum += rest * (1.0 - share) * found.x;
         rest *= share;
         if rest == 0.0 {
             break;
         }
     }
-    // The distance to a box around the surface is a bound, too. With the factor of the finest level it has about the slope
-    // of the others, so that blends have no edge where it takes over.
-    let beyond = scene_row(data + 6u).y * length(max(abs(p - scene_row(data + 2u).xyz) - scene_row(data + 3u).xyz, vec3f(0.0)));
+    // The distance to a box around the surface is a bound, too.
+    let beyond = length(max(abs(p - scene_row(data + 2u).xyz) - scene_row(data + 3u).xyz, vec3f(0.0)));
     return select(max(sum, beyond), -sum, sign < 0.0);
 }
 
-// What the first level from this one on tells: the square of the distance from its grid, the distance by its samples, in
-// meters, and the number of the level after it.
-fn mesh_field_told(p: vec3f, data: u32, first: u32, levels: u32) -> vec3f {
-    var level = first;
-    var found = vec2f(0.0, TOLD_COARSER);
-    while found.y == TOLD_COARSER && level < levels {
-        found = mesh_field_level(p, data + 4u + LEVEL_ROWS * level);
-        level += 1u;
-    }
-    return vec3f(found, f32(level));
-}
-
-// The square of the distance from the grid of a level, and the distance that its samples tell at the nearest point of the
-// grid, in meters.
-fn mesh_field_level(p: vec3f, row: u32) -> vec2f {
+// A lower bound of the distance by the samples of a level, in meters; and what they tell, in voxels.
+fn mesh_field_level(p: vec3f, row: u32, scale: f32) -> vec2f {
     let place = scene_row(row);
     let size = scene_row(row + 1u);
     let voxel = place.w;
     let at = (p - place.xyz) * (1.0 / voxel);
     let within = clamp(at, vec3f(0.0), size.xyz * CELL_VOXELS);
     let raw = mesh_field_within(within, size, u32(scene_row(row + 2u).x));
+    let value = abs(raw) * voxel * scale;
     let beside = (at - within) * voxel;
-    return vec2f(dot(beside, beside), select(raw * voxel, TOLD_COARSER, raw == TOLD_COARSER));
+    let beyond = dot(beside, beside);
+    if beyond > 0.0 {
+        return vec2f(sqrt(beyond + value * value), raw);
+    }
+    return vec2f(value, raw);
 }
 
 // What samples tell at a point within the grid, both in voxels, from the origin of the grid.

@@ -21,6 +21,13 @@ fn dual_sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> vec4f {
 
 // The size of the voxels of the finest level that tells anything of a point, in meters.
 fn mesh_field_voxel(p: vec3f, data: u32) -> f32 {
-    let told = u32(mesh_field_told(p, data, 0u, u32(scene_row(data + 1u).x)).z);
-    return scene_row(data + 1u + LEVEL_ROWS * told).w;
+    let levels = u32(scene_row(data + 1u).x);
+    var row = data + 4u;
+    for (var level = 0u; level + 1u < levels; level += 1u) {
+        if mesh_field_level(p, row, 1.0).y != TOLD_COARSER {
+            break;
+        }
+        row += LEVEL_ROWS;
+    }
+    return scene_row(row).w;
 }

@@ -2,7 +2,7 @@
 //!
 //! Bricks reach only as far as three voxels. Farther from the surface coarser bricks take over, each level with voxels
 //! twice as large. From one and a half voxels to three, the distance by one level fades into that by the next, so
-//! that the field is continuous, and times [`BrickLevels::scales`] it is a lower bound of the distance to the surface of
+//! that the field is continuous, and times [`BrickLevels::scale`] it is a lower bound of the distance to the surface of
 //! the finest, exact in sign and zeros. Where a level has no bricks because the next one tells as much (see `detail`),
 //! the next one is the first.
 //!
@@ -31,14 +31,11 @@ use super::{
 
 /// Most levels: at twice the size each, the last reaches 512 voxels of the first.
 pub const MAX_LEVELS: usize = 8;
-/// Most by which the factor of a level may be greater than that of the next: the field keeps growing where it fades.
-const MOST_STEP: f64 = 1.25;
-
 /// Bricks in voxels of several sizes, the finest first; never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrickLevels {
     all: Vec<Arc<Bricks>>,
-    scales: Vec<f64>,
+    scale: f64,
     mark: u32,
     /// Empty if any level has no looks.
     look_header: Vec<[u32; 4]>,
@@ -73,8 +70,8 @@ impl BrickLevels {
     /// These bricks, and all coarser ones. Measures them, once: its numbers take a look at every texel.
     pub fn new(finest: &Arc<Bricks>) -> Self {
         let all: Vec<Arc<Bricks>> = finest.levels().collect();
-        let (scales, mark) = (scales_of(&all), mark_of(&all));
-        let mut made = Self { all, scales, mark, look_header: Vec::new() };
+        let (scale, mark) = (scale_of(&all), mark_of(&all));
+        let mut made = Self { all, scale, mark, look_header: Vec::new() };
         if made.all.iter().all(|bricks| bricks.looks.is_some()) {
             made.look_header = look_header(&made);
         }
@@ -119,11 +116,10 @@ impl BrickLevels {
         &self.all[0]
     }
 
-    /// The factors on the distances that levels tell, with which the slope of the field is at most 1, also where a level
-    /// fades into the next. So it is a lower bound of the distance from its zeros. Coarser levels are steeper, and farther
-    /// apart: their factors are smaller.
-    pub fn scales(&self) -> &[f64] {
-        &self.scales
+    /// The factor on the distances that levels tell, with which the slope of the field is at most 1, also where a level
+    /// fades into the next. So it is a lower bound of the distance from its zeros.
+    pub fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// A number of 24 bits that other bricks rarely have.
@@ -171,37 +167,22 @@ fn mark_of(all: &[Arc<Bricks>]) -> u32 {
     (words.fold(0xcbf2_9ce4_8422_2325, step) >> 40) as u32
 }
 
-/// See [`BrickLevels::scales`].
-///
-/// Let k and k' be the slopes of a level and of the next one, s and s' their factors, a how far they are apart where they
-/// fade, and w the width of the fade from f to f + w. At its share t, where the level tells a distance v = f + w t, the slope
-/// of (1 - t) s v + t s' v' is at most |(1 - t) s - (s - s') v / w| k + t s' k' + s' a k / w. With f = w that is greatest
-/// at t = 0 or 1: s' (k + a k / w), and 2 (s - s') k + s' (k' + a k / w).
-fn scales_of(all: &[Arc<Bricks>]) -> Vec<f64> {
-    const WIDTH: f64 = FADE_END - FADE_START;
-    const { assert!(WIDTH == FADE_START) };
-    let slopes: Vec<f64> = all.iter().map(|bricks| bricks.slope()).collect();
-    let mut scales = vec![1.0; all.len()];
-    for level in (0..all.len()).rev() {
-        let own = slopes[level];
-        let Some(next) = all.get(level + 1) else {
-            scales[level] = 1.0 / own;
-            continue;
-        };
-        let fading = apart(&all[level], next) * own / WIDTH;
-        let most = 1.0 / (own.max(slopes[level + 1]) + fading);
-        let shrink = (most / scales[level + 1]).min(1.0);
-        scales[level + 1..].iter_mut().for_each(|scale| *scale *= shrink);
-        let coarser = scales[level + 1];
-        let room = (1.0 - coarser * (slopes[level + 1] + fading)) / (2.0 * own);
-        scales[level] = (1.0 / own).min(coarser + room).min(MOST_STEP * coarser);
-    }
-    scales
+/// See [`BrickLevels::scale`].
+fn scale_of(all: &[Arc<Bricks>]) -> f64 {
+    let steepest = all.iter().fold(1.0_f64, |most, bricks| most.max(bricks.slope()));
+    let fading = all.windows(2).fold(0.0_f64, |most, pair| most.max(fading_slope(&pair[0], &pair[1])));
+    1.0 / steepest.max(fading)
 }
 
-/// How far apart two levels are where one fades into the other, in voxels of the finer: at every other sample, with a
-/// tenth more for those between.
-fn apart(finer: &Bricks, coarser: &Bricks) -> f64 {
+/// The greatest slope of the field where a level fades into the next: over half a voxel at every other sample, with a tenth
+/// more for those between.
+fn fading_slope(finer: &Bricks, coarser: &Bricks) -> f64 {
+    let voxel = finer.voxel();
+    let faded = |p: DVec3| {
+        let own = finer.value(p).abs() / voxel;
+        let share = ((own - FADE_START) / (FADE_END - FADE_START)).clamp(0.0, 1.0);
+        if share > 0.0 { own + share * (coarser.value(p).abs() / voxel - own) } else { own }
+    };
     let all: Vec<[u32; 3]> = cells(finer.grid.bricks()).collect();
     let of_brick = |brick: &[u32; 3]| {
         let Some(BrickContent::Samples(samples)) = finer.content(*brick) else { return 0.0 };
@@ -209,9 +190,10 @@ fn apart(finer: &Bricks, coarser: &Bricks) -> f64 {
         for [x, y, z] in cells([BRICK_SAMPLES as u32 / 2; 3]).map(|at| at.map(|n| 2 * n)) {
             let side = BRICK_SAMPLES as u32;
             let own = BrickContent::sample_voxels(samples[(x + side * (y + side * z)) as usize]).abs();
-            if own > FADE_START && own < FADE_END {
+            if own > FADE_START - 0.5 && own < FADE_END + 0.5 {
                 let p = finer.grid.sample([0, 1, 2].map(|i| brick[i] * BRICK_VOXELS + [x, y, z][i]));
-                most = most.max((coarser.value(p).abs() / finer.grid.voxel - own).abs());
+                let rise = DVec3::AXES.map(|axis| faded(p + 0.25 * voxel * axis) - faded(p - 0.25 * voxel * axis));
+                most = most.max(2.0 * DVec3::from(rise).length());
             }
         }
         most

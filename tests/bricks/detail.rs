@@ -8,17 +8,12 @@ use isolith::bricks::{
     BRICK_SAMPLES, BRICK_VOXELS, BrickContent, BrickLevels, Bricks, DETAIL, MAX_LEVELS, SAMPLE_STEPS,
 };
 use isolith::field::PreparedShape;
-use isolith::mesh::{bricks_of, voxel_for, voxelized};
+use isolith::mesh::bricks_of;
 use isolith::scene::{ModelFile, Shape, ShapeKind};
 
 use super::shapes::{Soup, ten};
-use super::{Dice, all_bricks, errors, near, on_surface};
+use super::{Dice, all_bricks, errors, levels, near, on_surface};
 use crate::contract::samples::evaluate;
-
-fn levels(soup: &Soup, resolution: f64) -> Arc<Bricks> {
-    let mesh = soup.mesh();
-    voxelized(&mesh, voxel_for(&mesh.bounds, resolution), &mut |_| true).unwrap().bricks
-}
 
 fn left_out(bricks: &Bricks) -> Vec<[u32; 3]> {
     all_bricks(bricks).filter(|brick| bricks.content(*brick) == Some(BrickContent::Coarser)).collect()
@@ -40,7 +35,7 @@ fn what_is_left_out_is_told_by_the_coarser_level() {
         let ([_, own, worst], [_, all, most]) = (errors(&finest, &points), errors(&whole, &points));
         let told = format!("{name}: p99 {own:.3} and {all:.3} voxels, max {worst:.3} and {most:.3}");
         let counts = [&finest, &Arc::new(whole.clone())].map(|level| level.count());
-        println!("{told}, bricks {counts:?}, factors {:.2?}", BrickLevels::new(&finest).scales());
+        println!("{told}, bricks {counts:?}, factor {:.2}", BrickLevels::new(&finest).scale());
         assert!(own < (all + DETAIL).max(DETAIL + ROUNDING) && worst < most + 2.0 * DETAIL, "{told}");
         assert!(finest.count() <= whole.count(), "{name}");
         if is_smooth {

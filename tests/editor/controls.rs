@@ -106,7 +106,7 @@ fn everything() -> (Scene, Vec<NodeId>) {
 #[test]
 fn every_control_of_every_panel_has_a_name_and_a_tooltip() {
     let (scene, ids) = everything();
-    let mut harness = open_sized(scene, 3000.0);
+    let mut harness = open_sized(scene, 4000.0);
     let mut known = BTreeSet::new();
     let mut found = faults(&mut harness, &mut known);
     for id in ids {

@@ -1,7 +1,7 @@
 //! The field of distance bricks, see `isolith_bricks` for their texels and for why it is a lower bound. Rows of the
-//! payload: the number of levels, and a number that says which bricks they are; the middle and half the size of a box around
-//! the surface. Then for each level: origin of the voxels and their size; cells along each axis, first texel; the first texel
-//! of samples after that one, and the factor on distances.
+//! payload: the number of levels, the factor on distances, and a number that says which bricks they are; the middle and half
+//! the size of a box around the surface. Then for each level: origin of the voxels and their size; cells along each axis, first
+//! texel; the first texel of samples after that one.
 
 use super::Real;
 use super::sdf::Data;
@@ -32,56 +32,48 @@ pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
 
 /// The size of the voxels of the finest level that tells anything of a point, in meters.
 fn mesh_field_voxel(p: DVec3, data: Data<'_>) -> f64 {
-    let (_, told) = mesh_field_told(p, data, 0);
-    data.row(4 + LEVEL_ROWS * (told - 1))[3]
+    let levels = data.row(1)[0] as usize;
+    // The last level always tells something.
+    let told = (0..levels - 1).find(|level| mesh_field_level(p, data, *level).is_some()).unwrap_or(levels - 1);
+    data.row(4 + LEVEL_ROWS * told)[3]
 }
 
 fn mesh_field(p: DVec3, data: Data<'_>) -> f64 {
     let levels = data.row(1)[0] as usize;
-    let (mut sum, mut rest) = (0.0, 1.0);
     // The sign is that of the first level that tells anything.
-    let (mut found, mut told) = mesh_field_told(p, data, 0);
-    let is_inside = found[1] < 0.0;
+    let (mut sum, mut rest, mut sign) = (0.0, 1.0, 0.0);
     for level in 0..levels {
-        if told <= level {
-            (found, told) = mesh_field_told(p, data, level);
+        let Some((value, raw)) = mesh_field_level(p, data, level) else { continue };
+        if sign == 0.0 {
+            sign = if raw < 0.0 { -1.0 } else { 1.0 };
         }
-        let [beyond, distance] = [found[0], found[1].abs()];
-        let row = 4 + LEVEL_ROWS * level;
-        let fade = ((distance / data.row(row)[3] - FADE_START) / (FADE_END - FADE_START)).clamp(0.0, 1.0);
+        let fade = ((raw.abs() - FADE_START) / (FADE_END - FADE_START)).clamp(0.0, 1.0);
         let fade = if level + 1 == levels { 0.0 } else { fade };
-        sum += rest * (1.0 - fade) * (beyond + (distance * data.row(row + 2)[1]).powi(2)).sqrt();
+        sum += rest * (1.0 - fade) * value;
         rest *= fade;
         if rest == 0.0 {
             break;
         }
     }
     let [center, half] = [2, 3].map(|row| DVec3::from_slice(&data.row(row)));
-    let beyond = data.row(6)[1] * ((p - center).abs() - half).max(DVec3::ZERO).length();
-    if is_inside { -sum } else { sum.max(beyond) }
+    let beyond = ((p - center).abs() - half).max(DVec3::ZERO).length();
+    if sign < 0.0 { -sum } else { sum.max(beyond) }
 }
 
-/// What the first level from this one on tells: see [`mesh_field_level`]; and the number of the level after it.
-fn mesh_field_told(p: DVec3, data: Data<'_>, first: usize) -> ([f64; 2], usize) {
-    let levels = data.row(1)[0] as usize;
-    let told = (first..levels).find_map(|level| Some((mesh_field_level(p, data, level)?, level + 1)));
-    // The last level always tells something.
-    told.unwrap_or(([0.0; 2], levels))
-}
-
-/// The square of the distance from the grid of a level, and the distance that its samples tell at the nearest point of the
-/// grid, in meters; `None` where the next level tells as much.
+/// A lower bound of the distance by the samples of a level, in meters, and what they tell, in voxels; `None` where the next
+/// level tells as much.
 ///
 /// Outside of the grid the distance to the grid and that from there on are the sides of a right triangle or of an obtuse
 /// one, since the grid is convex and holds the surface.
-fn mesh_field_level(p: DVec3, data: Data<'_>, level: usize) -> Option<[f64; 2]> {
+fn mesh_field_level(p: DVec3, data: Data<'_>, level: usize) -> Option<(f64, f64)> {
     let row = 4 + LEVEL_ROWS * level;
     let [x, y, z, voxel] = data.row(row);
     let size = data.row(row + 1);
     let at = (p - DVec3::new(x, y, z)) / voxel;
     let within = at.clamp(DVec3::ZERO, DVec3::new(size[0], size[1], size[2]) * f64::from(CELL_VOXELS));
     let raw = mesh_field_within(within.to_array(), data, row)?;
-    Some([((at - within) * voxel).length_squared(), raw * voxel])
+    let (value, beside) = (raw.abs() * voxel * data.row(1)[1], (at - within) * voxel);
+    Some((if beside == DVec3::ZERO { value } else { beside.length().hypot(value) }, raw))
 }
 
 /// The distance that samples tell at a point within the grid, both in voxels, from the origin of the grid.

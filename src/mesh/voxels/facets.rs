@@ -164,11 +164,11 @@ impl LevelScale {
         (IVec3::from(own) * self.step + self.first).to_array()
     }
 
-    fn from_own(&self, p: Vec3) -> Vec3 {
+    fn finest(&self, p: Vec3) -> Vec3 {
         p * self.step as f32 + self.first.as_vec3()
     }
 
-    fn to_own(&self, p: Vec3) -> Vec3 {
+    fn own(self, p: Vec3) -> Vec3 {
         (p - self.first.as_vec3()) / self.step as f32
     }
 
@@ -188,21 +188,21 @@ impl<'a> LevelFacets<'a> {
 
     pub fn nearest_of(&self, p: Vec3, within: f32, is_one: impl Fn(u32) -> bool) -> Option<(f32, u32)> {
         let area = self.scale.area();
-        let found = self.facets.nearest_of(self.scale.from_own(p), within * area, is_one);
+        let found = self.facets.nearest_of(self.scale.finest(p), within * area, is_one);
         found.map(|(squared, triangle)| (squared / area, triangle))
     }
 
     pub fn within(&self, low: Vec3, high: Vec3, found: impl FnMut(u32)) {
-        self.facets.within(self.scale.from_own(low), self.scale.from_own(high), found);
+        self.facets.within(self.scale.finest(low), self.scale.finest(high), found);
     }
 
     pub fn extent(&self, triangle: u32) -> [Vec3; 2] {
-        extent(&self.facets.corners[triangle as usize]).map(|p| self.scale.to_own(p))
+        extent(&self.facets.corners[triangle as usize]).map(|p| self.scale.own(p))
     }
 
     /// The corners of a triangle.
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.facets.corners[triangle as usize].map(|p| self.scale.to_own(p))
+        self.facets.corners[triangle as usize].map(|p| self.scale.own(p))
     }
 
     /// The triangle of the mesh; [`NONE`] for one that closes a hole.
@@ -211,14 +211,14 @@ impl<'a> LevelFacets<'a> {
     }
 
     pub fn distance_squared(&self, triangle: u32, p: Vec3) -> f32 {
-        let p = self.scale.from_own(p);
+        let p = self.scale.finest(p);
         p.distance_squared(self.facets.point(triangle, self.facets.weights(triangle, p))) / self.scale.area()
     }
 
     /// The barycentric weights of the point of a triangle that is nearest to `p`, and this point.
     pub fn foot(&self, triangle: u32, p: Vec3) -> ([f32; 3], Vec3) {
-        let weights = self.facets.weights(triangle, self.scale.from_own(p));
-        (weights, self.scale.to_own(self.facets.point(triangle, weights)))
+        let weights = self.facets.weights(triangle, self.scale.finest(p));
+        (weights, self.scale.own(self.facets.point(triangle, weights)))
     }
 }
 
