@@ -81,7 +81,7 @@ impl ShadowPass {
     /// Takes pipelines that have become ready. Returns whether there were any, or some could not be built.
     pub fn collect(&mut self) -> bool {
         let Some(built) = self.orders.collect() else { return false };
-        if let Some(built) = built {
+        if let Ok(built) = built {
             self.pipelines.insert(0, built);
             self.pipelines.truncate(MOST_PIPELINES);
         }

@@ -96,7 +96,7 @@ impl ShadowKind {
 #[derive(Debug, Default)]
 pub struct ShadowOrders {
     order: Option<(ShadowKind, [bool; 2])>,
-    finished: Option<Receiver<Option<ShadowPipelines>>>,
+    finished: Option<Receiver<Result<ShadowPipelines, String>>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -114,7 +114,7 @@ impl ShadowOrders {
         let (finish, finished) = channel();
         let (gpu, layouts, of) = (gpu.clone(), layouts.clone(), kind.clone());
         let work = move || {
-            let built = guarded(|| build_beside(&gpu, &layouts, of, used, options)).ok().flatten();
+            let built = guarded(|| build_beside(&gpu, &layouts, of, used, options)).unwrap_or_else(Err);
             // Without a receiver nobody wants them any more.
             let _ = finish.send(built);
         };
@@ -123,12 +123,12 @@ impl ShadowOrders {
         self.thread = std::thread::Builder::new().name("shadow pipelines".into()).spawn(work).ok();
     }
 
-    /// The pipelines that have become ready; `None` in the second place if they could not be built.
-    pub fn collect(&mut self) -> Option<Option<ShadowPipelines>> {
+    /// The pipelines that have become ready, or why they could not be built.
+    pub fn collect(&mut self) -> Option<Result<ShadowPipelines, String>> {
         let built = match self.finished.as_ref()?.try_recv() {
             Ok(built) => built,
             Err(std::sync::mpsc::TryRecvError::Empty) => return None,
-            Err(std::sync::mpsc::TryRecvError::Disconnected) => None,
+            Err(std::sync::mpsc::TryRecvError::Disconnected) => Err("the thread has panicked".into()),
         };
         self.finished = None;
         self.join();
@@ -161,7 +161,7 @@ fn build_beside(
     kind: ShadowKind,
     used: [bool; 2],
     options: Options,
-) -> Option<ShadowPipelines> {
+) -> Result<ShadowPipelines, String> {
     if gpu.is_software() {
         // A software driver compiles at the first dispatch; the result stays in its cache.
         meet_elsewhere(gpu, &kind, used, options)?;
@@ -169,23 +169,23 @@ fn build_beside(
     let own = ShadowBindings::layout(&gpu.device);
     let queried = HierarchyBuffers::layout(&gpu.device, kind.obstacles);
     let build = |part: usize| match used[part] {
-        true => kind.build(&gpu.device, layouts, [&own, &queried], part, options).ok().map(Some),
-        false => Some(None),
+        true => kind.build(&gpu.device, layouts, [&own, &queried], part, options).map(Some),
+        false => Ok(None),
     };
-    let pipelines = [build(0)?, build(1)?];
-    Some(ShadowPipelines { kind, pipelines })
+    let [first, second] = [0, 1].map(|part| build(part).map_err(|error| error.to_string()));
+    Ok(ShadowPipelines { kind, pipelines: [first?, second?] })
 }
 
 /// Dispatches the pipelines over nothing, on a device of their own.
-fn meet_elsewhere(gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Options) -> Option<()> {
-    let prewarmer = Prewarmer::new(gpu, options).ok()?;
+fn meet_elsewhere(gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Options) -> Result<(), String> {
+    let prewarmer = Prewarmer::new(gpu, options).map_err(|error| error.to_string())?;
     let (gpu, layouts) = prewarmer.device();
     let device = &gpu.device;
     // A dispatch must not read a buffer that it writes, so each binding has its own buffer.
     let zeros: Vec<SyncedBuffer> = (0..12)
         .map(|_| {
             let mut buffer = SyncedBuffer::rows(device, "prewarm");
-            buffer.set(device, &gpu.queue, &[0; 1024]);
+            buffer.set(device, &gpu.queue, &[0; 4096]);
             buffer
         })
         .collect();
@@ -213,10 +213,11 @@ fn meet_elsewhere(gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Option
     let descriptor = wgpu::BindGroupDescriptor { label: Some("prewarm"), layout: &queried, entries: &entries };
     let hierarchy = device.create_bind_group(&descriptor);
     for part in (0..used.len()).filter(|part| used[*part]) {
-        let pipeline = kind.build(device, layouts, [&own_layout, &queried], part, options).ok()?;
-        prewarmer.meet_shadow(&pipeline, &own, &hierarchy).ok()?;
+        let pipeline = kind.build(device, layouts, [&own_layout, &queried], part, options);
+        let pipeline = pipeline.map_err(|error| error.to_string())?;
+        prewarmer.meet_shadow(&pipeline, &own, &hierarchy).map_err(|error| error.to_string())?;
     }
-    Some(())
+    Ok(())
 }
 
 #[cfg(test)]
@@ -241,7 +242,7 @@ mod tests {
                 }
                 std::thread::sleep(std::time::Duration::from_millis(20));
             };
-            let built = built.expect("the driver takes it");
+            let built = built.unwrap_or_else(|reason| panic!("{kind:?}: {reason}"));
             assert!(built.pipelines.iter().all(Option::is_some) && built.kind.serves(&kind));
             gpu.check().unwrap_or_else(|error| panic!("{error}"));
         }

@@ -75,7 +75,7 @@ const COPIES: &str = "with modifiers three surfaces are alive at once, beside a 
 /// Exceptions from the limits, as measured with Mesa 22.3.6. Its compiler gives a lane of GFX11 at most 132 registers
 /// and spills the rest.
 pub const EXCEPTIONS: &[Exception] = &[
-    surface("shapes", EvaluatorKind::Interpreter, 256, 371, ORBIT),
+    surface("shapes", EvaluatorKind::Interpreter, 256, 373, ORBIT),
     surface("shapes", EvaluatorKind::Straight, 232, 296, ORBIT),
     surface("fractals", EvaluatorKind::Interpreter, 256, 409, ORBIT),
     surface("fractals", EvaluatorKind::Straight, 232, 296, ORBIT),

@@ -229,7 +229,8 @@ fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
         // With all that a scene may need of the pass `shade`.
         let options = Options { shadowed: true, ..OPTIONS };
         let nothing = Evaluator::Interpreter(OpSet::none());
-        let text = assemble_with(&format!("{pass}.wgsl"), &nothing, options, &["TEXTURES"]).map_err(failed)?;
+        let text =
+            assemble_with(&format!("{pass}.wgsl"), &nothing, options, &["TEXTURES", "FULL_SHARES"]).map_err(failed)?;
         let shader = Shader::new(pass, &text)?;
         for entry_point in shader.entry_points(ShaderStage::Compute) {
             all.push((pass.to_owned(), compute(pass, &text, &entry_point, &FIELD_OFFSETS)?));
