@@ -1,6 +1,6 @@
 //! The window: shows the editor and keeps its picture up to date.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use eframe::egui_wgpu::RenderState;
 use egui::{Vec2, vec2};
@@ -23,9 +23,15 @@ pub(super) struct Window {
     /// Whether the window has been painted once. The first picture comes later, because a driver may compile for
     /// seconds.
     is_open: bool,
+    /// Since when input has been waiting while pictures rest.
+    input_since: Option<Instant>,
     /// Artificial delay of each frame, to simulate a slow machine.
     delay: Duration,
 }
+
+/// Longest time for which waiting input goes before pictures: keys are handled one a frame, and many slow pictures would hold
+/// them up for seconds.
+const INPUT_FIRST: Duration = Duration::from_millis(500);
 
 /// Environment variable with that delay in milliseconds.
 const FRAME_DELAY: &str = "ISOLITH_FRAME_DELAY";
@@ -45,14 +51,28 @@ impl Window {
             state,
             shared,
             is_open: false,
+            input_since: None,
             delay: delay.unwrap_or_default(),
         })
     }
 }
 
 impl Window {
+    /// Whether input that waits is to be handled before pictures go on.
+    fn input_goes_first(&mut self, waits: bool) -> bool {
+        let since = self.input_since.get_or_insert_with(Instant::now).elapsed();
+        let is_first = waits && since < INPUT_FIRST;
+        if !is_first {
+            self.input_since = None;
+        }
+        is_first
+    }
+
     /// Advances the pictures of all viewports: first that of the active one, and the others while it rests.
     fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
+        if self.input_goes_first(Editor::input_waits(ctx)) {
+            return Ok(());
+        }
         let stops = editor.take_stop_drawing();
         let active = editor.active_view();
         let mut views: Vec<(usize, ViewSettings)> = vec![(active, editor.view())];

@@ -60,6 +60,11 @@ impl Plugin for InputOrder {
 }
 
 impl InputOrder {
+    /// Whether events wait for a later pass.
+    pub fn is_waiting(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
     fn allow_slow_clicks(&mut self, ctx: &Context, time: Option<f64>) {
         let Some(now) = time else { return };
         let frame = now - self.time.replace(now).unwrap_or(now);

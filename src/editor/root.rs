@@ -120,6 +120,11 @@ impl Editor {
         ctx.options_mut(|options| options.input_options.surrender_focus_on = SurrenderFocusOn::Presses);
     }
 
+    /// Whether events wait for a later frame, which is asked for.
+    pub fn input_waits(ctx: &Context) -> bool {
+        ctx.plugin_opt::<input_order::InputOrder>().is_some_and(|order| order.lock().is_waiting())
+    }
+
     /// Sets the list of recent files, which persists between runs.
     pub fn set_recent(&mut self, recent: RecentFiles) {
         self.state.files.set_recent(recent);
