@@ -12,7 +12,7 @@ use super::{BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOXELS, BrickContent, Bricks, FAD
 
 /// How far what a coarser level tells may be off where it stands in, in voxels of the finest level: coarser levels are
 /// held to the same error, because they stand in for the finest, too.
-pub const DETAIL: f64 = 1.0 / 16.0;
+pub const DETAIL: f64 = 1.0 / 20.0;
 /// Distances beyond this need not agree, in voxels: no voxel reaches from here to where this level counts.
 const DETAIL_REACH: f64 = FADE_END + 1.75;
 

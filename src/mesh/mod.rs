@@ -45,5 +45,5 @@ pub use resolve::ModelFileTable;
 pub use surface::{Surface, TextureUse};
 pub use texture::{Sampler, Texture, Wrap};
 pub use triangle_mesh::{MeshHit, MeshLook, MeshPart, TriangleMesh};
-pub use voxels::{Voxelized, bricks_key, bricks_of, usual_resolution, voxel_for, voxelized};
+pub use voxels::{Voxelized, bricks_key, bricks_of, maker_key, usual_resolution, voxel_for, voxelized};
 pub use watch::Watcher;

@@ -12,12 +12,13 @@ use isolith_field::flatten;
 use isolith_field::scene_eval::SceneEvaluator;
 use isolith_geometry::{Aabb, Transform};
 use isolith_jobs::Task;
+use isolith_mesh::maker_key;
 use isolith_scene::{
     BlendOverride, Environment, Group, Material, Node, NodeId, NodeKind, Operation, Scene, Track, file,
 };
 
-/// Changes with what is made of the same content.
-const MAKER: u64 = 1;
+/// Changes with what the f64 evaluation says of the same content; what bricks hold of it is in the maker's key.
+const MAKER: u64 = 2;
 
 /// The content of a group, in its own space.
 #[derive(Debug)]
@@ -74,7 +75,7 @@ impl GroupContent {
         let part =
             Scene::from_tables(nodes, materials, Environment::default(), 0).map_err(|error| error.to_string())?;
         let mut hash = ContentHash::default();
-        hash.word(MAKER);
+        maker_key().0.into_iter().chain([MAKER]).for_each(|word| hash.word(word));
         hash.bytes(file::to_json(&part).map_err(|error| error.to_string())?.as_bytes());
         Ok(Self { name: format!("{} {}", top.name, top.id), scene: part, key: hash.key() })
     }

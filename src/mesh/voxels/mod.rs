@@ -11,6 +11,7 @@
 //! | `detail` | which of them tell more than those of the next coarser level |
 //! | `paint` | the looks of the samples around the surface |
 //! | `key` | what bricks are made of, for files of them |
+//! | `sample` | a small mesh that tells one maker from another |
 //! | `watch` | progress and cancellation |
 //!
 //! Surfaces that masks cut out count as whole.
@@ -22,11 +23,12 @@ mod facets;
 mod key;
 mod paint;
 mod resolution;
+mod sample;
 mod samples;
 mod solid;
 mod watch;
 
-pub use key::bricks_key;
+pub use key::{bricks_key, maker_key};
 pub use resolution::{usual_resolution, voxel_for};
 
 use std::sync::Arc;
