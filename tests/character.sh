@@ -7,56 +7,19 @@ set -euo pipefail
 
 program=$(realpath "$1")
 pictures=${2:-}
-work=$(mktemp -d)
-export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data XDG_CONFIG_HOME=$work/config XDG_RUNTIME_DIR=$work/run
-# No bus, so no file dialogs but our own.
-export DBUS_SESSION_BUS_ADDRESS=disabled:
-unset WAYLAND_DISPLAY
-mkdir -p -m 700 "$HOME" "$XDG_STATE_HOME/isolith" "$XDG_DATA_HOME" "$XDG_CONFIG_HOME" "$XDG_RUNTIME_DIR"
-echo '{"skips_welcome": true}' >"$XDG_STATE_HOME/isolith/preferences.json"
-
-Xvfb -displayfd 3 -screen 0 1600x1000x24 -nolisten tcp 3>"$work/display" 2>/dev/null &
-server=$!
-editor=
-finish() {
-    [ -z "$editor" ] || kill "$editor" 2>/dev/null || true
-    kill "$server" 2>/dev/null || true
-    rm -rf "$work"
-}
-trap finish EXIT
-for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-DISPLAY=:$(cat "$work/display")
-export DISPLAY
-
-"$program" 2>"$work/errors" &
-editor=$!
-window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$editor" | head -n 1)
-xdotool windowmove "$window" 0 0 windowsize "$window" 1600 1000
-# Without a window manager nobody gives the keyboard to it.
-xdotool windowfocus "$window"
+# shellcheck source=tests/desktop.sh
+source "$(dirname "$0")/desktop.sh"
+screen=1600x1000
+preferences '{"skips_welcome": true}'
+show_screen $screen
+open_editor
+spread_window $screen
 sleep 4
 
-pause=${PAUSE:-0.3}
-keys() { xdotool key --delay 40 "$@"; sleep "$pause"; }
-letters() { xdotool type --delay 20 -- "$1"; sleep "$pause"; }
-click() { xdotool mousemove "$1" "$2"; sleep "$pause"; xdotool click 1; sleep "$pause"; }
-# Saves, and waits until all that was typed so far is in the file: a slow machine is behind.
 file=$work/character.isolith
-saved() {
-    keys ctrl+s
-    if [ ! -e "$file" ]; then
-        keys ctrl+a; letters "$file"; keys Return
-    fi
-    for _ in $(seq 900); do
-        [ "$(grep -c '"object"' "$file" 2>/dev/null || true)" != "$parts" ] || return 0
-        sleep 1
-    done
-    echo "the file does not hold $parts parts" >&2
-    return 1
-}
 # A picture once it has settled.
 picture() {
-    saved
+    save_objects "$parts"
     [ -z "$pictures" ] || { mkdir -p "$pictures"; sleep "${SETTLE:-8}"; import -window root "$pictures/$1.png"; }
 }
 

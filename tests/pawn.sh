@@ -8,56 +8,21 @@ set -euo pipefail
 program=$(realpath "$1")
 pictures=${2:-}
 root=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d)
-export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data XDG_CONFIG_HOME=$work/config XDG_RUNTIME_DIR=$work/run
-# No bus, so no file dialogs but our own.
-export DBUS_SESSION_BUS_ADDRESS=disabled:
-unset WAYLAND_DISPLAY
-mkdir -p -m 700 "$HOME" "$XDG_STATE_HOME/isolith" "$XDG_DATA_HOME" "$XDG_CONFIG_HOME" "$XDG_RUNTIME_DIR"
-echo '{"skips_welcome": true}' >"$XDG_STATE_HOME/isolith/preferences.json"
-
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3>"$work/display" 2>/dev/null &
-server=$!
-editor=
-finish() {
-    [ -z "$editor" ] || kill "$editor" 2>/dev/null || true
-    kill "$server" 2>/dev/null || true
-    rm -rf "$work"
-}
-trap finish EXIT
-for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-DISPLAY=:$(cat "$work/display")
-export DISPLAY
-
-"$program" 2>"$work/errors" &
-editor=$!
-window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$editor" | head -n 1)
-xdotool windowmove "$window" 0 0 windowsize "$window" 1280 800
-# Without a window manager nobody gives the keyboard to it.
-xdotool windowfocus "$window"
+# shellcheck source=tests/desktop.sh
+source "$root/tests/desktop.sh"
+pause=${PAUSE:-0.6}
+screen=1280x800
+preferences '{"skips_welcome": true}'
+show_screen $screen
+open_editor
+spread_window $screen
 sleep 4
 
-pause=${PAUSE:-0.6}
 gestures=0 in_viewport=0
 counted() { gestures=$((gestures + 1)); [ "$1" = panel ] || in_viewport=$((in_viewport + 1)); }
-keys() { xdotool key --delay 40 "$@"; sleep "$pause"; }
-letters() { xdotool type --delay 20 -- "$1"; sleep "$pause"; }
-click() { xdotool mousemove "$1" "$2"; sleep "$pause"; xdotool click 1; sleep "$pause"; }
 picture() { [ -z "$pictures" ] || { mkdir -p "$pictures"; sleep "${SETTLE:-3}"; import -window root "$pictures/pawn-$1.png"; }; }
 file=$work/pawn.isolith
-saved() {
-    keys ctrl+s
-    if [ ! -e "$file" ]; then
-        keys ctrl+a; letters "$file"; keys Return
-    fi
-    for _ in $(seq 300); do
-        [ "$(grep -c '"object"' "$file" 2>/dev/null || true)" != "$1" ] || return 0
-        sleep 0.3
-    done
-    echo "the file does not hold $1 parts" >&2
-    picture wrong
-    return 1
-}
+saved() { save_objects "$1" || { picture wrong; return 1; }; }
 # The middle of the viewport, and the buttons of the toolbar.
 MIDDLE_X=${MIDDLE_X:-602} MIDDLE_Y=${MIDDLE_Y:-385}
 BOX=${BOX:-"138 51"} CYLINDER=${CYLINDER:-"171 51"} CONE=${CONE:-"204 51"} TORUS=${TORUS:-"237 51"} SPHERE=${SPHERE:-"105 51"}

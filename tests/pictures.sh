@@ -20,28 +20,9 @@ themes=${5:-Dark Light}
 settle_scene=${SETTLE_SCENE:-12}
 settle_panel=${SETTLE_PANEL:-3}
 
-work=$(mktemp -d)
-export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data XDG_CONFIG_HOME=$work/config XDG_RUNTIME_DIR=$work/run
-# No bus, so no file dialogs but our own.
-export DBUS_SESSION_BUS_ADDRESS=disabled:
-unset WAYLAND_DISPLAY
-mkdir -p -m 700 "$HOME" "$XDG_DATA_HOME" "$XDG_CONFIG_HOME" "$XDG_RUNTIME_DIR"
-
-server= editor=
-close() {
-    [ -z "$editor" ] || kill "$editor" 2>/dev/null || true
-    [ -z "$server" ] || kill "$server" 2>/dev/null || true
-    [ -z "$editor" ] || wait "$editor" 2>/dev/null || true
-    editor= server=
-}
-finish() {
-    close
-    rm -rf "$work"
-}
-trap finish EXIT
-
-keys() { xdotool key --delay 30 "$@"; }
-click() { xdotool mousemove "$1" "$2" click 1; }
+# shellcheck source=tests/desktop.sh
+source "$root/tests/desktop.sh"
+pause=0
 settle() { sleep "${1:-$settle_panel}"; }
 picture() { import -window root "$folder/$theme-$size-$1.png"; }
 
@@ -50,20 +31,11 @@ open() {
     local width=${size%%x*} rest=${size#*x}
     local height=${rest%%@*}
     scale=${rest#*@}
-    rm -rf "$XDG_STATE_HOME" "$work/display"
-    mkdir -p -m 700 "$XDG_STATE_HOME/isolith"
-    printf '{"skips_welcome": %s, "theme": "%s", "scale": %s}' "${WELCOMES:-true}" "$theme" "$scale" >"$XDG_STATE_HOME/isolith/preferences.json"
-    Xvfb -displayfd 3 -screen 0 "${width}x${height}x24" -nolisten tcp 3>"$work/display" 2>/dev/null &
-    server=$!
-    for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-    DISPLAY=:$(cat "$work/display")
-    export DISPLAY
-    "$program" "$@" 2>"$work/errors" &
-    editor=$!
-    window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$editor" | head -n 1)
-    xdotool windowmove "$window" 0 0 windowsize "$window" "$width" "$height"
-    # Without a window manager nobody gives the keyboard to it.
-    xdotool windowfocus "$window"
+    rm -rf "$XDG_STATE_HOME"
+    preferences "$(printf '{"skips_welcome": %s, "theme": "%s", "scale": %s}' "${WELCOMES:-true}" "$theme" "$scale")"
+    show_screen "${width}x$height"
+    open_editor "$@"
+    spread_window "${width}x$height"
     xdotool mousemove $((width / 2)) $((height / 2))
 }
 
@@ -91,14 +63,14 @@ shown() {
     xdotool mousemove $(at 600 12)
     settle "${SETTLE_LAST:-90}"
     import -window root "$folder/$name.png"
-    close
+    close_desktop
 }
 row() { click $(at 110 "$1"); settle; }
 # Runs commands by their names, with the pointer over the viewport.
 commands() {
     local name
     for name in "$@"; do
-        keys F3; settle; xdotool type --delay 30 -- "$name"; settle; keys Return; settle
+        keys F3; settle; letters "$name"; settle; keys Return; settle
     done
 }
 # Two views, the second in clay.
@@ -134,10 +106,10 @@ for theme in $themes; do
         click $(at 82 17); settle; picture file; keys Escape; settle 0.5
         click $(at 118 17); settle; picture edit; keys Escape; settle 0.5
         click $(at 192 17); settle; picture view; keys Escape; settle 0.5
-        close
+        close_desktop
         WELCOMES=false open
         settle "$settle_scene"
         picture welcome
-        close
+        close_desktop
     done
 done

@@ -25,44 +25,17 @@ if [ "${#missing[@]}" != 0 ]; then
     "${as_root[@]}" apt-get install -y --no-install-recommends "${missing[@]}" </dev/null
 fi
 
-folder="$(mktemp -d)"
-export XDG_STATE_HOME="$folder/state" XDG_CONFIG_HOME="$folder/config" XDG_DATA_HOME="$folder/data"
-export XDG_RUNTIME_DIR="$folder/run"
-mkdir -m 700 "$XDG_RUNTIME_DIR"
-unset WAYLAND_DISPLAY
-
-editor=""
-Xvfb -displayfd 1 -screen 0 1280x800x24 -nolisten tcp -noreset >"$folder/display" 2>/dev/null &
-screen=$!
-cleanup() {
-    [ -z "$editor" ] || kill -9 "$editor" 2>/dev/null || true
-    kill "$screen" 2>/dev/null || true
-    rm -rf "$folder"
-}
-trap cleanup EXIT
-for _ in $(seq 100); do [ ! -s "$folder/display" ] || break; sleep 0.1; done
-[ -s "$folder/display" ] || { echo "Xvfb does not start" >&2; exit 1; }
-DISPLAY=":$(cat "$folder/display")"
-export DISPLAY
+# shellcheck source=tests/desktop.sh
+source "$root/tests/desktop.sh"
+show_screen 1280x800
 
 now_ms() { date +%s%3N; }
 nodes() { "$program" check "$1" --json | tr -d ' \n' | sed -E 's/.*"nodes":([0-9]+).*/\1/'; }
 fail() { echo "FAILED in run $run: $1" >&2; exit 1; }
 kept() { find "$XDG_STATE_HOME/isolith/recovery" -name "$1" 2>/dev/null | wc -l; }
 
-# Starts an editor and waits for its window to take keys.
 start_editor() {
-    "$program" "$1" >"$folder/log" 2>&1 &
-    editor=$!
-    window=""
-    for _ in $(seq 600); do
-        window="$(xdotool search --onlyvisible --pid "$editor" 2>/dev/null | tail -1 || true)"
-        [ -z "$window" ] || break
-        kill -0 "$editor" 2>/dev/null || fail "the editor ended: $(cat "$folder/log")"
-        sleep 0.1
-    done
-    [ -n "$window" ] || fail "no window"
-    xdotool windowfocus "$window"
+    open_editor "$1" || fail "the editor ended or has no window"
     sleep 2
 }
 
@@ -74,7 +47,7 @@ stop_editor() {
 
 worst=0 sum=0 pictures=0 presses=0
 for run in $(seq "$kills"); do
-    scene="$folder/scene$run.json"
+    scene="$work/scene$run.json"
     cp "$root/tests/cases/outputs/ball.json" "$scene"
     base="$(nodes "$scene")"
     start_editor "$scene"

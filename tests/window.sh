@@ -9,28 +9,12 @@ set -euo pipefail
 
 program=$(realpath "$1")
 pictures=${2:-}
-work=$(mktemp -d)
 failures=0
-export HOME=$work/home XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data XDG_CONFIG_HOME=$work/config XDG_RUNTIME_DIR=$work/run
-# No bus, so no file dialogs but our own.
-export DBUS_SESSION_BUS_ADDRESS=disabled:
+# shellcheck source=tests/desktop.sh
+source "$(dirname "$0")/desktop.sh"
 export ISOLITH_FRAME_DELAY=1000
-unset WAYLAND_DISPLAY
-mkdir -p -m 700 "$HOME" "$XDG_STATE_HOME" "$XDG_DATA_HOME" "$XDG_CONFIG_HOME" "$XDG_RUNTIME_DIR"
-
 screen=1024x640
-Xvfb -displayfd 3 -screen 0 "${screen}x24" -nolisten tcp 3>"$work/display" 2>/dev/null &
-server=$!
-editor=
-finish() {
-    [ -z "$editor" ] || kill "$editor" 2>/dev/null || true
-    kill "$server" 2>/dev/null || true
-    rm -rf "$work"
-}
-trap finish EXIT
-for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-DISPLAY=:$(cat "$work/display")
-export DISPLAY
+show_screen $screen
 
 scene=$work/scene.json
 fresh() {
@@ -50,13 +34,8 @@ fresh() {
 SCENE
 }
 
-window=
 start() {
-    "$program" "$scene" 2>"$work/errors" &
-    editor=$!
-    window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$editor" | head -n 1)
-    # Without a window manager nobody gives the keyboard to it.
-    xdotool windowfocus "$window"
+    open_editor "$scene"
     settle
 }
 

@@ -82,13 +82,18 @@ impl Editor {
     }
 }
 
+/// The window.
+pub(super) fn window_id() -> Id {
+    Id::unique("field doctor")
+}
+
 impl Doctor {
     fn show(&mut self, state: &EditorState, studio: Option<&SharedStudio>, ctx: &Context) -> Option<Wish> {
         let mut is_open = self.is_open;
         let mut wish = None;
         let place = ctx.content_rect().right_top() + vec2(-SIZE.x - 340.0, 110.0);
         Window::new("Field doctor")
-            .id(Id::unique("field doctor"))
+            .id(window_id())
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)
@@ -119,8 +124,14 @@ impl Doctor {
             if self.findings.is_some() && findings.is_empty() {
                 ui.add_space(0.3 * room);
                 ui.vertical_centered(|ui| {
-                    ui.label(ICON_CHECK_CIRCLE.rich_text().size(34.0).color(*theme::SUCCESS));
-                    ui.label("Nothing to complain about.");
+                    if !self.is_busy() {
+                        ui.label(ICON_CHECK_CIRCLE.rich_text().size(34.0).color(*theme::SUCCESS));
+                    }
+                    ui.label(match (self.is_busy(), self.cost.is_some()) {
+                        (true, _) => "Nothing found so far.",
+                        (false, true) => "Nothing to complain about.",
+                        (false, false) => "Nothing is wrong. What nodes cost was not measured.",
+                    });
                 });
             }
             if self.findings.is_none() && !self.is_busy() {

@@ -1,11 +1,12 @@
 //! What helps at the start: welcome, tour, help.
 
-use egui::{Context, Pos2};
+use egui::{Context, Id, Pos2};
 
 use super::help::HelpTab;
 use super::root::Editor;
 use super::state::Example;
 use super::welcome::{ThumbnailOf, WelcomeChoice};
+use super::{doctor_view, help, history_list, render_view};
 use isolith_session::ReadDocument;
 
 impl Editor {
@@ -58,22 +59,21 @@ impl Editor {
         self.help.show(ctx);
     }
 
-    /// Closes one of the windows beside the scene; false if none is open. A picture that is being rendered keeps its own.
-    pub(super) fn close_foremost(&mut self) -> bool {
+    /// Closes the window beside the scene that lies above the others; false if none is open. A picture that is being
+    /// rendered keeps its own.
+    pub(super) fn close_foremost(&mut self, ctx: &Context) -> bool {
         let is_rendering = self.is_rendering();
         let windows = [
-            (&mut self.help.is_open, true),
-            (&mut self.state.show_history, true),
-            (&mut self.doctor.is_open, true),
-            (&mut self.rendering.is_open, !is_rendering),
+            (&mut self.help.is_open, help::window_id(), true),
+            (&mut self.state.show_history, history_list::window_id(), true),
+            (&mut self.doctor.is_open, doctor_view::window_id(), true),
+            (&mut self.rendering.is_open, render_view::window_id(), !is_rendering),
         ];
-        for (is_open, may_close) in windows {
-            if *is_open && may_close {
-                *is_open = false;
-                return true;
-            }
-        }
-        false
+        let height = |id: Id| ctx.memory(|memory| memory.layer_ids().position(|layer| layer.id == id));
+        let open = windows.into_iter().filter(|(is_open, _, may_close)| **is_open && *may_close);
+        let Some((is_open, ..)) = open.max_by_key(|(_, id, _)| height(*id)) else { return false };
+        *is_open = false;
+        true
     }
 
     /// Opens the help with its keys, or with what is new.

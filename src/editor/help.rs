@@ -51,6 +51,11 @@ pub struct Help {
     news: Vec<NewsLine>,
 }
 
+/// The window.
+pub(super) fn window_id() -> Id {
+    Id::unique("help")
+}
+
 impl Help {
     /// Opens the window with a tab.
     pub fn open(&mut self, tab: HelpTab) {
@@ -68,7 +73,7 @@ impl Help {
         let mut is_open = self.is_open;
         let room = ctx.content_rect();
         Window::new("Help")
-            .id(Id::unique("help"))
+            .id(window_id())
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)

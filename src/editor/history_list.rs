@@ -1,9 +1,14 @@
 //! The window with all steps of undo and redo; a click goes there.
 
-use egui::{Context, RichText, ScrollArea, Ui, Window};
+use egui::{Context, Id, RichText, ScrollArea, Ui, Window};
 
 use super::state::EditorState;
 use super::theme;
+
+/// The window.
+pub(super) fn window_id() -> Id {
+    Id::unique("history")
+}
 
 /// Shows the window if it is open.
 pub fn show(state: &mut EditorState, ctx: &Context) {
@@ -12,7 +17,8 @@ pub fn show(state: &mut EditorState, ctx: &Context) {
         return;
     }
     let place = state.view.rect.left_bottom() + egui::vec2(60.0, -380.0);
-    let window = Window::new("History").open(&mut open).default_size([240.0, 320.0]).default_pos(place);
+    let window = Window::new("History").id(window_id()).open(&mut open);
+    let window = window.default_size([240.0, 320.0]).default_pos(place);
     let chosen = window.show(ctx, |ui| list(state, ui)).and_then(|shown| shown.inner).flatten();
     state.show_history = open;
     if let Some(steps) = chosen {

@@ -35,13 +35,18 @@ const PREVIEW_SIDE: f32 = 300.0;
 /// Maximum number of characters of a path in a message.
 const MOST_PATH: usize = 64;
 
+/// The window.
+pub(super) fn window_id() -> Id {
+    Id::unique("render")
+}
+
 impl Rendering {
     /// Shows the window while it is open. Returns whether files may be replaced if the artist starts rendering.
     pub fn show(&mut self, state: &EditorState, studio: Option<&SharedStudio>, ctx: &Context) -> Option<bool> {
         let mut is_open = self.is_open;
         let mut agreed = None;
         Window::new("Render")
-            .id(Id::unique("render"))
+            .id(window_id())
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)

@@ -132,3 +132,23 @@ fn pictures_of_examples_are_those_of_the_golden_tests() {
         assert!(mean < 5.0, "the picture of {name} differs by {mean:.1}: `magick {again}` makes it again");
     }
 }
+
+#[test]
+fn escape_closes_the_window_above_the_others_first() {
+    let mut harness = open(Scene::new());
+    for (first, second) in [(Key::F1, Key::F10), (Key::F10, Key::F1)] {
+        let shows = |harness: &Harness<'_, Editor>, key: Key| {
+            let bottom = if key == Key::F1 { "What's new" } else { "Findings" };
+            harness.query_by_label(bottom).is_some()
+        };
+        let is_open = |harness: &Harness<'_, Editor>| [first, second].map(|key| shows(harness, key));
+        press(&mut harness, Modifiers::NONE, first);
+        press(&mut harness, Modifiers::NONE, second);
+        harness.settle();
+        assert_eq!(is_open(&harness), [true, true]);
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+        assert_eq!(is_open(&harness), [true, false], "the one above");
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+        assert_eq!(is_open(&harness), [false, false]);
+    }
+}

@@ -45,7 +45,7 @@ impl Editor {
         if jobs.escapable().is_some() && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
             jobs.cancel_foremost();
         }
-        if ctx.input(|i| i.key_pressed(Key::Escape)) && self.close_foremost() {
+        if ctx.input(|i| i.key_pressed(Key::Escape)) && self.close_foremost(ctx) {
             ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
         }
         clipboard::take_events(&mut self.state, ctx);
