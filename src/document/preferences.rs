@@ -47,6 +47,12 @@ pub struct PreferenceValues {
     pub samples: Option<u32>,
     /// Most MiB that the bricks of models take; `None` for as many as there may be.
     pub brick_mebibytes: Option<u32>,
+    /// Whether drags snap unless Ctrl is held.
+    pub snaps: bool,
+    /// The step of lengths to which they snap, in meters; `None` for one that suits the view.
+    pub snap_length: Option<f64>,
+    /// The step of angles in degrees; `None` for the usual one.
+    pub snap_angle: Option<f64>,
 }
 
 impl Default for PreferenceValues {
@@ -62,6 +68,9 @@ impl Default for PreferenceValues {
             unit: String::new(),
             samples: None,
             brick_mebibytes: None,
+            snaps: false,
+            snap_length: None,
+            snap_angle: None,
         }
     }
 }
@@ -74,6 +83,9 @@ impl PreferenceValues {
         }
         self.keys.values_mut().for_each(limit_keys);
         self.layout = self.layout.take().filter(PanelLayout::is_sound);
+        let is_step = |step: &f64| step.is_finite() && *step > 0.0;
+        self.snap_length = self.snap_length.filter(is_step);
+        self.snap_angle = self.snap_angle.filter(is_step);
         self.scale = if self.scale.is_finite() { self.scale.clamp(SCALES[0], SCALES[1]) } else { 1.0 };
     }
 }

@@ -97,13 +97,14 @@ pub fn pick_surface_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Opti
 
 fn surface(state: &EditorState, flat: &FlatScene, ray: &Ray, limits: RayLimits) -> Option<PickedPoint> {
     let meshes = flat.known_meshes(state.derived.library());
-    let mesh = trace_meshes(flat, &meshes, ray, limits.near, limits.far).map(|found| found.hit);
-    let limits = RayLimits { far: mesh.as_ref().map_or(limits.far, |hit| hit.t), ..limits };
+    let mesh = trace_meshes(flat, &meshes, ray, limits.near, limits.far);
+    let limits = RayLimits { far: mesh.as_ref().map_or(limits.far, |found| found.hit.t), ..limits };
     let mut evaluator = SceneEvaluator::new(flat).of_eye(ray.origin);
     let Some(hit) = evaluator.ray(ray, limits).ok().flatten() else {
-        let hit = mesh?;
-        let normal = if hit.normal.dot(ray.direction) > 0.0 { -hit.normal } else { hit.normal };
-        return Some(PickedPoint { point: ray.at(hit.t), normal });
+        let found = mesh?;
+        let normal = found.normal().unwrap_or(-ray.direction);
+        let normal = if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
+        return Some(PickedPoint { point: ray.at(found.hit.t), normal });
     };
     let point = ray.at(hit.t);
     // Central differences: wide enough for the digits of the field, narrow against what can be seen.

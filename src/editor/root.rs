@@ -21,6 +21,7 @@ use super::preferences_window::PreferencesWindow;
 use super::rendering::Rendering;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
+use super::snapping::SnapSettings;
 use super::state::{EditorState, Example, Request};
 use super::tour::Tour;
 use super::view_state::{Picture, ViewSettings};
@@ -136,6 +137,7 @@ impl Editor {
         if let Some(samples) = self.state.preferences.values().samples {
             self.state.view.samples = samples.clamp(1, MOST_SAMPLES);
         }
+        self.state.view.snap = SnapSettings::kept(self.state.preferences.values());
         if let Some(mebibytes) = self.state.preferences.values().brick_mebibytes {
             self.state.derived.set_brick_budget(mebibytes);
         }

@@ -26,6 +26,13 @@ pub struct MeshRayHit {
     pub copy: Option<Copy>,
 }
 
+impl MeshRayHit {
+    /// The interpolated normal in the world, of unit length; `None` where the mesh is pressed flat.
+    pub fn normal(&self) -> Option<DVec3> {
+        (self.world_from_local.matrix3.inverse().transpose() * self.hit.normal).try_normalize()
+    }
+}
+
 /// The first triangle on the ray between `near` and `far`. Blended surfaces count where they have any opacity.
 pub fn trace_meshes(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<MeshRayHit> {
     trace_covering(flat, meshes, ray, [near, far], |_, opacity| opacity > 0.0)

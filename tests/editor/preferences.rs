@@ -53,6 +53,26 @@ fn preferences_are_chosen_in_their_window_and_kept() {
 }
 
 #[test]
+fn how_drags_snap_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("preferences.json");
+    let mut harness = open(scene().0);
+    harness.state_mut().set_preferences(Preferences::load_from(&store));
+    for command in ["Snap lengths: 0.02", "Snap angles: 45", "Snap always"] {
+        press(&mut harness, Modifiers::NONE, Key::F3);
+        harness.event(Event::Text(command.into()));
+        harness.run();
+        press(&mut harness, Modifiers::NONE, Key::Enter);
+    }
+    let kept = values(&store);
+    assert_eq!((kept.snaps, kept.snap_length, kept.snap_angle), (true, Some(0.02), Some(45.0)));
+    // Steps that are none are not taken over.
+    std::fs::write(&store, r#"{ "snap_length": -1.0, "snap_angle": 0.0 }"#).unwrap();
+    let kept = values(&store);
+    assert_eq!((kept.snaps, kept.snap_length, kept.snap_angle), (false, None, None));
+}
+
+#[test]
 fn a_length_is_typed_in_the_unit_in_use_or_in_another() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open(scene);

@@ -11,7 +11,7 @@ use crate::help::HelpTab;
 use crate::intent::Intent;
 use crate::log_panel::LOG;
 use crate::root::Editor;
-use crate::snapping::{ANGLES, LENGTHS};
+use crate::snapping::{ANGLES, LENGTHS, SnapSettings};
 use crate::state::{EditorState, Request};
 use crate::{
     arrange, camera_view, clipboard, dope_sheet, drawing, insertion, instancer_edits, keying, material_edits,
@@ -149,9 +149,9 @@ fn run_on_view(state: &mut EditorState, command: Command) {
         Command::UseTool(tool) => state.view.tool = tool,
         Command::UseOrientation(orientation) => state.view.orientation = orientation,
         Command::UsePivot(pivot) => state.view.pivot = pivot,
-        Command::ToggleSnap => state.view.snap.is_on ^= true,
-        Command::SnapLengths(index) => state.view.snap.length = index.map(|index| LENGTHS[index]),
-        Command::SnapAngles(index) => state.view.snap.angle = ANGLES[index],
+        Command::ToggleSnap => change_snapping(state, |snap| snap.is_on ^= true),
+        Command::SnapLengths(index) => change_snapping(state, |snap| snap.length = index.map(|index| LENGTHS[index])),
+        Command::SnapAngles(index) => change_snapping(state, |snap| snap.angle = ANGLES[index]),
         Command::UseKeymap(keymap) => state.use_keymap(keymap),
         Command::ShowShading(shading) => state.view.show_shading(shading),
         Command::CycleShading => state.view.cycle_shading(),
@@ -162,6 +162,13 @@ fn run_on_view(state: &mut EditorState, command: Command) {
         // Those of a window in front or a file.
         _ => {}
     }
+}
+
+/// Changes how drags snap, and keeps it for the next start.
+fn change_snapping(state: &mut EditorState, change: impl FnOnce(&mut SnapSettings)) {
+    change(&mut state.view.snap);
+    let snap = state.view.snap;
+    state.preferences.change(|values| snap.keep(values));
 }
 
 fn models(state: &mut EditorState, command: Command) {

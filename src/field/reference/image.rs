@@ -276,7 +276,7 @@ impl View<'_> {
         let MeshRayHit { index, ref hit, world_from_local, .. } = *found;
         let placed = &self.flat.meshes[index];
         let normal_from_local = world_from_local.matrix3.inverse().transpose();
-        let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
+        let normal = found.normal().unwrap_or(-direction);
         let mesh = self.meshes[index].as_ref().expect("it was hit");
         let own = placed.material.map(|material| SurfaceMaterial::from(&self.flat.materials[material as usize]));
         let (normal, material, occlusion) = match own {
