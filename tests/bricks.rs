@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
 mod baked;
+mod budget;
 mod detail;
 mod exact;
 mod looks;

@@ -126,7 +126,22 @@ impl Soup {
         self
     }
 
+    /// A rectangle of no thickness, across Y.
+    pub fn sheet(half: [f64; 2]) -> Self {
+        let mut out = Self::default();
+        out.quad(
+            [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]]
+                .map(|[x, z]| DVec3::new(x * half[0], 0.0, z * half[1])),
+        );
+        out
+    }
+
     pub fn mesh(&self) -> TriangleMesh {
+        parse(&self.glb(), Path::new("made.glb"), None).unwrap()
+    }
+
+    /// The same as a file.
+    pub fn glb(&self) -> Vec<u8> {
         let mut tiny = Tiny::new();
         let points: Vec<[f32; 3]> = self.points.iter().map(|p| p.as_vec3().to_array()).collect();
         let positions = tiny.floats(&points);
@@ -134,7 +149,7 @@ impl Soup {
         const U32: u32 = FLOAT - 1;
         let indices = tiny.accessor(&bytes, U32, "SCALAR", 3 * self.triangles.len());
         tiny.mesh(json!({ "attributes": { "POSITION": positions }, "indices": indices }));
-        parse(&tiny.glb(), Path::new("made.glb"), None).unwrap()
+        tiny.glb()
     }
 }
 
