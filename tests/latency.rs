@@ -4,12 +4,14 @@ use std::time::{Duration, Instant};
 
 use egui::{Event, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable;
+use glam::{DVec2, uvec2};
 use isolith::document::Document;
 use isolith::editor::{Editor, Picture};
+use isolith::field::pick::pick;
 use isolith::render::{OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use isolith::scene::file;
 
-use crate::gpu::shared;
+use crate::gpu::{BenchScene, shared};
 use crate::settle::Settle;
 
 /// The time that the viewport grants a picture at once.
@@ -78,4 +80,33 @@ fn a_dragged_value_is_in_the_picture_soon() {
     let [median, late] = [times[EVENTS / 2], times[EVENTS * 99 / 100 - 1]];
     note(&format!("577 nodes, event to picture: median {median:?}, p99 {late:?}"));
     assert!(median <= MEDIAN, "{median:?}");
+}
+
+/// Rays of a click.
+const CLICKS: u32 = 16;
+/// Most of the mean time of a click.
+const CLICK: Duration = Duration::from_millis(20);
+
+/// Picking asks the f64 evaluation, at any distance and before there is a picture: decision 101 rests on these times.
+#[test]
+fn a_click_takes_milliseconds_without_the_picture() {
+    for name in ["random-577", "character", "terrain", "city", "asteroids", "ocean", "stanford", "fractals"] {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+        let scene = file::load(&folder.join(name).with_extension("json")).expect("it is shipped");
+        let scene = BenchScene::new(name, &scene, Some(folder));
+        let mut worst = Duration::ZERO;
+        let start = Instant::now();
+        let mut hits = 0;
+        for pixel in (0..CLICKS * CLICKS).map(|i| uvec2(i % CLICKS, i / CLICKS)) {
+            let ray = scene.camera.ray(pixel.as_dvec2() + 0.5, DVec2::splat(CLICKS.into()));
+            let before = Instant::now();
+            let (near, far) = (scene.camera.near, scene.camera.far);
+            hits += u32::from(pick(&scene.flat, &scene.meshes, &ray, near, far).is_some());
+            worst = worst.max(before.elapsed());
+        }
+        let mean = start.elapsed() / (CLICKS * CLICKS);
+        note(&format!("| {name} | {:.2} | {:.1} |", 1e3 * mean.as_secs_f64(), 1e3 * worst.as_secs_f64()));
+        assert!(hits > CLICKS, "{name}: {hits}");
+        assert!(mean < CLICK, "{name}: {mean:?}");
+    }
 }
