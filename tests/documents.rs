@@ -63,7 +63,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
         assert_eq!(document.undo_labels().count(), steps, "{path}");
     }
     let labels: Vec<_> = document.undo_labels().take(5).map(str::to_owned).collect();
-    assert_eq!(labels, ["Change display", "Change environment", "Change material Clay", "Place b", "Change b"]);
+    assert_eq!(labels, ["Change display", "Change environment", "Change material Clay", "Move b", "Change b"]);
     let now = text(&document);
     let radius = format!("node.{}.object.shape.radius", id.0);
     let error = set(&mut document, &radius, ParamValue::Scalar(-1.0)).expect_err("beyond its limits").to_string();

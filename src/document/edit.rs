@@ -244,7 +244,15 @@ fn replace_label(old: &Node, new: &Node) -> String {
     } else if old.operation != new.operation {
         format!("{} {name}", new.operation.label())
     } else if old.transform != new.transform {
-        format!("Place {name}")
+        let [now, was] = [&new.transform, &old.transform];
+        let changed = [now.translation != was.translation, now.rotation != was.rotation, now.scale != was.scale];
+        let verb = match changed {
+            [true, false, false] => "Move",
+            [_, true, false] => "Rotate",
+            [_, false, true] => "Scale",
+            _ => "Transform",
+        };
+        format!("{verb} {name}")
     } else {
         format!("Change {name}")
     }

@@ -55,7 +55,7 @@ impl Category {
             Self::Lights => "Lights",
             Self::Cameras => "Cameras",
             Self::Meshes => "Meshes",
-            Self::Groups => "Groups",
+            Self::Groups => "Groups and instancers",
             Self::More => "More",
         }
     }

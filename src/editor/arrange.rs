@@ -10,7 +10,7 @@ use super::selection;
 use super::state::EditorState;
 use isolith_document::Edit;
 use isolith_geometry::Aabb;
-use isolith_scene::{Node, NodeId, NodeKind};
+use isolith_scene::{Node, NodeId, NodeKind, ParamOwner, Track};
 
 /// The selected nodes that can move, with their bounds in the world; empty with a message if a lock is in the way.
 fn movable(state: &mut EditorState) -> Vec<(NodeId, Aabb)> {
@@ -111,23 +111,50 @@ pub fn origin_to_children(state: &mut EditorState, place: OriginPlace) {
     }
     state.session.document.begin_step("Move the origin");
     for (id, origin) in edits {
-        // A group within another one that has moved its origin.
-        let scene = state.session.document.snapshot();
-        let Some(group) = scene.node(id) else { continue };
-        let mut moved = Node::clone(group);
-        moved.transform.translation = group.transform.to_affine().transform_point3(origin);
-        state.session.apply(Edit::Replace(moved));
-        for child in scene.children(Some(id)) {
-            let mut child = Node::clone(child);
-            child.transform.translation -= origin;
-            state.session.apply(Edit::Replace(child));
-        }
+        move_origin(&mut state.session, id, origin);
     }
     state.session.document.end_gesture();
     if let Some(name) = refused {
         let text = format!("“{name}” has modifiers or dynamics, which work from its origin: it stays where it is.");
         state.session.messages.push(Message::warning(text));
     }
+}
+
+/// Moves the origin of a group to a point in its space; its content stays in place.
+fn move_origin(session: &mut EditSession, id: NodeId, origin: DVec3) {
+    // A group within another one that has moved its origin.
+    let scene = session.document.snapshot();
+    let Some(group) = scene.node(id) else { return };
+    let mut moved = Node::clone(group);
+    moved.transform.translation = group.transform.to_affine().transform_point3(origin);
+    session.apply(Edit::Replace(moved));
+    for child in scene.children(Some(id)) {
+        let mut child = Node::clone(child);
+        child.transform.translation -= origin;
+        session.apply(Edit::Replace(child));
+    }
+}
+
+/// Makes a group by `group`, and puts its origin below the middle of what it holds, so that it turns and grows there. One step
+/// of undo. Keys of positions are those from the origin: with such children it stays where it was.
+pub fn grouped(state: &mut EditorState, group: impl FnOnce(&mut EditSession)) {
+    let before = state.session.document.snapshot();
+    state.session.document.begin_gesture();
+    group(&mut state.session);
+    let scene = state.session.document.snapshot();
+    let selection = state.session.document.selection().to_vec();
+    for id in selection.into_iter().filter(|id| before.node(*id).is_none()) {
+        let children: Vec<NodeId> = scene.children(Some(id)).map(|child| child.id).collect();
+        let moves = |track: &Track| matches!(track.path.owner, ParamOwner::Node(node, _) if children.contains(&node));
+        let is_free = !scene.animation.tracks().iter().any(|track| moves(track));
+        let has_size = children.iter().any(|child| bounds::is_solid(&scene, *child));
+        let bounds = bounds::oriented(&scene, state.derived.library(), id).map(|(_, bounds)| bounds);
+        if let Some(bounds) = bounds.filter(|_| is_free && has_size) {
+            let origin = tidy(bounds.center().with_y(bounds.min.y));
+            move_origin(&mut state.session, id, origin);
+        }
+    }
+    state.session.document.end_gesture();
 }
 
 #[cfg(test)]

@@ -69,6 +69,12 @@ fn has_size(node: &Node) -> bool {
     }
 }
 
+/// Whether anything of a node or below it is solid and ends somewhere.
+pub fn is_solid(scene: &Scene, id: NodeId) -> bool {
+    let Some(index) = scene.index_of(id) else { return false };
+    scene.nodes()[scene.subtree(index)].iter().any(|node| has_size(node))
+}
+
 fn of_node(meshes: &MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aabb {
     local(meshes, node).map_or(Aabb::EMPTY, |bounds| bounds.transformed(world_from_node))
 }

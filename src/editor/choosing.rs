@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use egui::Context;
 
+use super::bringing::ModelUse;
 use super::dialogs::{ENDINGS, Next, PathField, Purpose, Question, SystemAnswer, SystemDialog, with_ending};
 use super::intent::Intent;
 use super::messages::Message;
@@ -177,15 +178,41 @@ impl Editor {
     }
 
     fn add_mesh(&mut self, path: &Path) {
-        let Some(relative) = self.named_from_scene(path) else { return };
         let name = path.file_stem().map_or_else(|| "Mesh".into(), |s| s.to_string_lossy().into_owned());
+        match self.named_from_scene(path) {
+            Some(relative) => self.insert_mesh(name, relative),
+            None => self.bring(path, ModelUse::Add(name)),
+        }
+    }
+
+    /// Copies a model from elsewhere below the scene's folder, then uses it.
+    fn bring(&mut self, path: &Path, wanted: ModelUse) {
+        self.state.bringing.start(self.state.derived.jobs(), &self.state.session, path, wanted);
+    }
+
+    /// Uses the model that was copied. Call once a frame.
+    pub(super) fn use_brought_model(&mut self) {
+        match self.state.bringing.poll(&mut self.state.session) {
+            Some((ModelUse::Add(name), path)) => self.insert_mesh(name, path),
+            Some((ModelUse::Relink(old), path)) => self.relink_to(&old, &path),
+            None => {}
+        }
+    }
+
+    fn insert_mesh(&mut self, name: String, relative: String) {
         insertion::node(&mut self.state, Node::new(name, NodeKind::Mesh(MeshNode::new(relative))));
     }
 
     /// Gives all meshes of a file another file, and all fields of one. Those without a file get one if they are
     /// selected.
     fn relink(&mut self, old: &str, path: &Path) {
-        let Some(relative) = self.named_from_scene(path) else { return };
+        match self.named_from_scene(path) {
+            Some(relative) => self.relink_to(old, &relative),
+            None => self.bring(path, ModelUse::Relink(old.to_owned())),
+        }
+    }
+
+    fn relink_to(&mut self, old: &str, relative: &str) {
         let scene = self.state.session.document.snapshot();
         let chosen: Vec<NodeId> = self.state.session.document.selection().to_vec();
         let step = if old.is_empty() { "Choose a model".to_owned() } else { format!("Relink {old}") };
@@ -201,21 +228,19 @@ impl Editor {
                 _ => continue,
             };
             if place == old {
-                place.clone_from(&relative);
+                relative.clone_into(place);
                 self.state.session.apply(Edit::Replace(Node { kind, ..Node::clone(node) }));
             }
         }
         self.state.session.document.end_gesture();
     }
 
-    /// The path of a file as scenes name it: from their folder, with slashes. Reports a file that is elsewhere.
-    fn named_from_scene(&mut self, path: &Path) -> Option<String> {
+    /// The path of a file as scenes name it: from their folder, with slashes; `None` for a file that is elsewhere.
+    fn named_from_scene(&self, path: &Path) -> Option<String> {
         let folder =
             self.state.session.document.path().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
         let relative = path.strip_prefix(&folder).ok().filter(|_| path.is_absolute()).unwrap_or(path);
         if relative.is_absolute() {
-            let text = "Only files in the scene's folder or below it can be used. Copy the mesh there first.";
-            self.report(Message::error(text));
             return None;
         }
         let parts: Vec<_> = relative.iter().map(|p| p.to_string_lossy()).collect();

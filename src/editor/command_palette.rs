@@ -101,12 +101,20 @@ impl CommandPalette {
     }
 }
 
-/// The commands whose label contains every typed word; those that start with the text come first.
+/// The commands whose label contains every typed word; those that start with the text come first. If there are none, those
+/// whose help contains them.
 fn matches(text: &str) -> Vec<Command> {
     let wanted = text.to_lowercase();
     let words: Vec<&str> = wanted.split_whitespace().collect();
     let label = |command: &Command| command.info().label.to_lowercase();
-    let mut found: Vec<_> = Command::all().filter(|command| words.iter().all(|w| label(command).contains(w))).collect();
+    let help = |command: &Command| format!("{} {}", command.info().label, command.info().help).to_lowercase();
+    let of = |text: &dyn Fn(&Command) -> String| -> Vec<Command> {
+        Command::all().filter(|command| words.iter().all(|word| text(command).contains(word))).collect()
+    };
+    let mut found = of(&label);
+    if found.is_empty() {
+        found = of(&help);
+    }
     found.sort_by_key(|command| !label(command).starts_with(wanted.trim()));
     found
 }
@@ -122,5 +130,7 @@ mod tests {
         assert_eq!(names("s").first().map(String::as_str), Some("Save"));
         assert_eq!(names("").len(), Command::all().count());
         assert!(names("xyzzy").is_empty());
+        // By what it does, if no name says so.
+        assert!(names("split").contains(&"Two views".to_owned()), "{:?}", names("split"));
     }
 }

@@ -53,13 +53,13 @@ impl Editor {
                 Some(WelcomeChoice::Close) | None => {}
             }
         }
-        if !self.welcome.is_open {
+        if !self.welcome.is_open && !self.help.is_open && !self.has_dialog() {
             self.tour.show(&self.state, ctx);
         }
         self.help.show(ctx);
     }
 
-    /// Closes the window beside the scene that lies above the others; false if none is open. A picture that is being
+    /// Closes the window beside the scene that lies above the others, or ends the tour; false if none is open. A picture that is being
     /// rendered keeps its own.
     pub(super) fn close_foremost(&mut self, ctx: &Context) -> bool {
         let is_rendering = self.is_rendering();
@@ -71,7 +71,7 @@ impl Editor {
         ];
         let height = |id: Id| ctx.memory(|memory| memory.layer_ids().position(|layer| layer.id == id));
         let open = windows.into_iter().filter(|(is_open, _, may_close)| **is_open && *may_close);
-        let Some((is_open, ..)) = open.max_by_key(|(_, id, _)| height(*id)) else { return false };
+        let Some((is_open, ..)) = open.max_by_key(|(_, id, _)| height(*id)) else { return self.tour.end() };
         *is_open = false;
         true
     }

@@ -10,11 +10,11 @@ use super::material_library::MaterialLibrary;
 use super::multi_edit::MultiEdit;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
+use super::theme::MIXED;
 use super::{
     icons, inspector_blends, inspector_instancer, inspector_kinds, inspector_lists, inspector_material,
     inspector_scene, inspector_transform, inspector_types, selection, theme, widgets,
 };
-use isolith_document::Edit;
 use isolith_jobs::Task;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeKind};
@@ -158,17 +158,20 @@ fn header(ui: &mut Ui, session: &mut EditSession, active: &Node, all: &[Arc<Node
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(22.0, theme::ROW_HEIGHT), egui::Sense::hover());
         icons::paint_node(ui.painter(), icons::centered(rect, 17.0), active);
-        let mut name = active.name.clone();
+        let ids: Vec<_> = all.iter().map(|n| n.id).collect();
+        let is_mixed = all.iter().any(|n| n.name != active.name);
+        let mut name = if is_mixed { String::new() } else { active.name.clone() };
         let field = TextEdit::singleline(&mut name)
+            .hint_text(if is_mixed { MIXED } else { "" })
             .char_limit(MAX_NAME)
             .desired_width(ui.available_width() - 58.0)
             .margin(egui::Margin::symmetric(6, 4));
-        let response = ui.add(field).on_hover_text("The name of the active node");
+        let help = if ids.len() > 1 { "The name of all of them" } else { "The name" };
+        let response = ui.add(field).on_hover_text(help);
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Name"));
         if response.changed() {
-            session.apply_by(response.id, Edit::Replace(Node { name, ..active.clone() }));
+            session.change(response.id, &ids, |n| n.name.clone_from(&name));
         }
-        let ids: Vec<_> = all.iter().map(|n| n.id).collect();
         let (icon, text) = if active.visible { (ICON_VISIBILITY, "Hide") } else { (ICON_VISIBILITY_OFF, "Show") };
         let color = if active.visible { theme::WEAK } else { theme::WARNING };
         let differs = |of: fn(&Node) -> bool| all.iter().any(|n| of(n) != of(active));

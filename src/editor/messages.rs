@@ -120,6 +120,16 @@ impl Messages {
         self.entries.iter().map(|e| &e.message)
     }
 
+    /// The last message, if it is a warning or an error whose toast was shown a short time ago.
+    pub fn recent(&self, now: f64) -> Option<&Message> {
+        const REMAINS: f64 = 20.0;
+        let last = self
+            .entries
+            .back()
+            .filter(|entry| !entry.dismissed && entry.until.is_none_or(|until| now < until + REMAINS))?;
+        matches!(last.message.severity, Severity::Warning | Severity::Error).then_some(&last.message)
+    }
+
     /// Shows the toasts in the lower right corner of `area`.
     pub fn show_toasts(&mut self, ctx: &Context, area: egui::Rect) {
         let now = ctx.input(|i| i.time);

@@ -34,7 +34,8 @@
 //! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `camera_view` | looking through a camera, its frame; bookmarks of views |
 //! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
-//! | `packing` | the files of models within the scene, and beside it again |
+//! | `node_warnings` | what is wrong with single nodes |
+//! | `packing`, `bringing` | the files of models within the scene, and beside it again; models from elsewhere |
 //! | `view_slots`, `side_views`, `side_viewport`, `dock_split` | several viewports: which one is active, its panel, layouts with them |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
@@ -56,6 +57,7 @@ mod arrange;
 mod arrangement;
 mod below_list;
 mod bounds;
+mod bringing;
 mod camera_view;
 mod changelog;
 mod choice_walk;
@@ -127,6 +129,7 @@ mod messages;
 mod multi_edit;
 mod navigation;
 mod node_picker;
+mod node_warnings;
 mod numbers;
 mod outliner;
 mod outliner_drop;

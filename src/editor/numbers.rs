@@ -195,9 +195,17 @@ pub fn take_refusal(ctx: &Context) -> Option<String> {
     ctx.data_mut(|d| d.remove_temp(refused()))
 }
 
-/// The number with as many decimals as a third of a row has room for; what is not 0 never becomes 0.
+/// The number with as many decimals as a third of a row has room for; what is not 0 never becomes 0, but for what rounding
+/// leaves.
 fn narrow_text(value: f64) -> String {
     const MOST: usize = 6;
+    // Of a turn by 180 degrees, three millionths of a degree may be left.
+    if value.abs() < 1e-6 {
+        return "0".into();
+    }
+    if value.abs() >= 1e6 || value.abs() < 1e-4 {
+        return format!("{value:.1e}").replace(".0e", "e");
+    }
     let text = number_text(value);
     if text.len() <= MOST {
         return text;
@@ -329,9 +337,16 @@ mod tests {
 
     #[test]
     fn three_numbers_fit_side_by_side() {
-        for (value, text) in
-            [(58.0693, "58.069"), (-11.7198, "-11.72"), (-0.322_14, "-0.322"), (0.0592, "0.0592"), (-4e-5, "-0.00004")]
-        {
+        for (value, text) in [
+            (58.0693, "58.069"),
+            (-11.7198, "-11.72"),
+            (-0.322_14, "-0.322"),
+            (0.0592, "0.0592"),
+            (-4e-5, "-4e-5"),
+            (3.1e-8, "0"),
+            (1e9, "1e9"),
+            (-1.26e7, "-1.3e7"),
+        ] {
             assert_eq!(narrow_text(value), text);
         }
     }

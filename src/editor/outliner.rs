@@ -13,11 +13,12 @@ use super::commands::command::Command;
 use super::commands::entries::context_entries;
 use super::edit_session::EditSession;
 use super::messages::Message;
+use super::messages::Severity;
 use super::outliner_drop::{RowId, destination, move_rows};
 use super::outliner_filter::{self, KindFilter};
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, Request};
-use super::{icons, instancing, theme, widgets};
+use super::{icons, instancing, node_warnings, theme, widgets};
 use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeId, NodeKind, Operation, Operator, Scene};
@@ -81,7 +82,8 @@ impl Panel for Outliner {
         if let Some(id) = state.renaming.take() {
             self.start_rename(state.session.document.scene(), id);
         }
-        let chosen = widgets::fixed(ui, |ui| self.show(ui, &mut state.session));
+        let warned = node_warnings::all(state);
+        let chosen = widgets::fixed(ui, |ui| self.show(ui, &mut state.session, &warned));
         state.requests.extend(chosen.into_iter().map(Request::Run));
     }
 
@@ -99,7 +101,7 @@ impl Outliner {
     }
 
     /// Shows the panel; returns the commands chosen in its context menu.
-    fn show(&mut self, ui: &mut Ui, session: &mut EditSession) -> Vec<Command> {
+    fn show(&mut self, ui: &mut Ui, session: &mut EditSession, warned: &HashMap<NodeId, String>) -> Vec<Command> {
         self.search_field(ui);
         let scene = session.document.snapshot();
         let reveal = self.follow_selection(session, &scene);
@@ -130,6 +132,7 @@ impl Outliner {
                 is_dragging: ui.input(|i| i.pointer.any_down()),
                 selected: session.document.selection().iter().copied().collect(),
                 shares: instancing::all_shares(&scene),
+                warned,
                 shown: shown.as_ref(),
                 reveal,
                 requests: &requests,
@@ -317,6 +320,7 @@ struct Rows<'a> {
     selected: HashSet<NodeId>,
     /// The shares of the types of instancers.
     shares: HashMap<NodeId, f64>,
+    warned: &'a HashMap<NodeId, String>,
     shown: Option<&'a HashSet<NodeId>>,
     /// The node to scroll to.
     reveal: Option<NodeId>,
@@ -410,7 +414,9 @@ impl Rows<'_> {
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             // What follows the name stays visible when the name is truncated.
             let share = self.shares.get(&node.id);
-            let room = if node.adds() { 0.0 } else { 16.0 } + if share.is_some() { 44.0 } else { 0.0 };
+            let warning = self.warned.get(&node.id);
+            let signs = u8::from(!node.adds()) + u8::from(warning.is_some());
+            let room = 16.0 * f32::from(signs) + if share.is_some() { 44.0 } else { 0.0 };
             ui.scope(|ui| {
                 ui.set_max_width((ui.available_width() - room).max(8.0));
                 ui.add(egui::Label::new(text.color(color)).selectable(false).truncate());
@@ -423,6 +429,9 @@ impl Rows<'_> {
             if let Some(sign) = sign {
                 let sign = ui.label(sign.color(theme::NEGATIVE).strong());
                 sign.on_hover_text(node.operation.label());
+            }
+            if let Some(warning) = warning {
+                ui.label(Severity::Warning.icon().size(14.0)).on_hover_text(warning);
             }
             if let Some(share) = share {
                 let text = RichText::new(instancing::percent(*share)).small().color(theme::GROUP);

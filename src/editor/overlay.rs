@@ -164,5 +164,8 @@ pub fn empty_hint(painter: &Painter, rect: Rect) {
     let at = rect.center() + vec2(0.0, -10.0);
     painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::ON_PICTURE);
     let text = "Shift A adds a shape where the pointer is; File, Examples opens a scene";
-    painter.text(at + vec2(0.0, 8.0), Align2::CENTER_TOP, text, FontId::proportional(13.5), theme::ON_PICTURE);
+    let mut job =
+        egui::text::LayoutJob::simple(text.into(), FontId::proportional(13.5), theme::ON_PICTURE, rect.width() - 24.0);
+    job.halign = egui::Align::Center;
+    painter.galley(at + vec2(0.0, 8.0), painter.layout_job(job), theme::ON_PICTURE);
 }

@@ -44,6 +44,10 @@ impl Rendering {
     /// Shows the window while it is open. Returns whether files may be replaced if the artist starts rendering.
     pub fn show(&mut self, state: &EditorState, studio: Option<&SharedStudio>, ctx: &Context) -> Option<bool> {
         let mut is_open = self.is_open;
+        if !is_open {
+            // A question that nobody answered is asked anew.
+            self.existing.clear();
+        }
         let mut agreed = None;
         Window::new("Render")
             .id(window_id())

@@ -198,6 +198,7 @@ impl Editor {
             ctx.request_repaint_after(later);
         }
         self.state.packing.poll(&mut self.state.session);
+        self.use_brought_model();
         self.show_in_front(&ctx);
         if let Some(command) = self.pending.take() {
             self.run(command, &ctx);
@@ -350,6 +351,7 @@ impl Editor {
             || self.wants_scan
             || self.state.files.is_busy()
             || self.state.packing.is_busy()
+            || self.state.bringing.is_busy()
             || self.conflict.is_looking()
             || self.is_recovering()
     }
@@ -417,6 +419,7 @@ impl Editor {
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.packing.forget();
+        self.state.bringing.forget();
         self.state.materials.forget();
         self.forget_kept();
         self.doctor.forget();

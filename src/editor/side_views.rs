@@ -7,6 +7,7 @@ use super::navigation::Navigation;
 use super::state::EditorState;
 use super::view_slots::{SIDES, VIEWS};
 use super::view_state::{Picture, PointerActivity, ViewSettings};
+use isolith_field::Shading;
 
 impl EditorState {
     /// Sets the pictures of all viewports.
@@ -59,9 +60,10 @@ impl EditorState {
             self.activate_view(index);
         }
         if index == self.views.active {
-            self.look_at_first(index);
+            self.look_at_first(index, self.views.slots[0].shading);
             return show(self);
         }
+        let shading = self.view.shading;
         let mut slot = std::mem::take(&mut self.views.slots[index]);
         slot.swap(&mut self.view, &mut self.picture);
         // What is in progress belongs to the active one.
@@ -72,7 +74,7 @@ impl EditorState {
         );
         (self.view.wants_box, self.view.wants_lasso) = (false, false);
         std::mem::swap(&mut self.views.slots[index].is_new, &mut slot.is_new);
-        self.look_at_first(index);
+        self.look_at_first(index, shading);
         let result = show(self);
         slot.is_new = self.views.slots[index].is_new;
         (self.view.transforming, self.view.pointer, self.view.modal_events) = (transforming, pointer_activity, events);
@@ -82,11 +84,12 @@ impl EditorState {
         result
     }
 
-    /// The first look of a viewport beside the main one.
-    fn look_at_first(&mut self, index: usize) {
+    /// The first look of a viewport beside the main one, in the shading of another one.
+    fn look_at_first(&mut self, index: usize, shading: Shading) {
         let Some((_, _, side)) = index.checked_sub(1).map(|beside| SIDES[beside]) else { return };
         if self.views.slots[index].is_new && !self.derived.is_preparing() {
             self.views.slots[index].is_new = false;
+            self.view.shading = shading;
             self.view.navigation = Navigation::default();
             self.view.navigation.look_along(side);
             self.frame_all();

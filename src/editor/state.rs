@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::bringing::Bringing;
 use super::commands::command::Command;
 use super::edit_session::EditSession;
 use super::file_jobs::FileJobs;
@@ -76,6 +77,8 @@ pub struct EditorState {
     pub files: FileJobs,
     /// Packs models into it.
     pub packing: Packing,
+    /// A model that is copied below the scene's folder.
+    pub bringing: Bringing,
     /// The picture of this frame.
     pub picture: Picture,
     /// The examples of the File menu.
@@ -111,6 +114,7 @@ impl Default for EditorState {
             materials: MaterialLibrary::default(),
             files: FileJobs::default(),
             packing: Packing::default(),
+            bringing: Bringing::default(),
             picture: Picture::default(),
             examples: Vec::new(),
             can_recover: false,

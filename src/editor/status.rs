@@ -10,7 +10,7 @@ use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::transforms::kinds::{Tool, TransformKind};
 use super::view_state::{Picture, PointerActivity};
-use super::{drawing, instancing, theme};
+use super::{drawing, instancing, node_warnings, theme};
 use isolith_geometry::Camera;
 use isolith_jobs::Task;
 use isolith_scene::NodeId;
@@ -165,7 +165,14 @@ fn left(state: &mut EditorState, ui: &mut Ui) {
         ui.add(egui::Label::new(RichText::new(text).color(theme::ERROR)).truncate());
         return;
     }
-    if let Some((node, text)) = warning(state) {
+    if let Some((node, text)) = node_warnings::first(state) {
+        // What has just happened goes before what has been so for long.
+        let now = ui.input(|i| i.time);
+        if let Some(message) = state.session.messages.recent(now) {
+            ui.label(message.severity.icon().size(14.0));
+            ui.add(egui::Label::new(RichText::new(&message.text).color(message.severity.color())).truncate());
+            return;
+        }
         ui.label(Severity::Warning.icon().size(14.0));
         let button = Button::new(RichText::new(text).color(theme::WARNING)).frame(false).truncate();
         if ui.add(button).on_hover_text("Selects the node").clicked() {
@@ -254,20 +261,6 @@ fn job(ui: &mut Ui, task: &Task, count: usize) {
     if !rest.is_empty() {
         ui.add(label(rest).truncate());
     }
-}
-
-/// The most important warning for the artist, with its node.
-fn warning(state: &EditorState) -> Option<(NodeId, String)> {
-    if let Some(problem) = state.derived.model_problem() {
-        return Some(problem.clone());
-    }
-    if let Some(problem) = state.derived.field_problem(&state.session.document) {
-        return Some(problem);
-    }
-    let warnings = &state.flat().warnings;
-    let first = warnings.first()?;
-    let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
-    Some((first.node, format!("{}: {}{more}", first.name, first.reason)))
 }
 
 #[cfg(test)]

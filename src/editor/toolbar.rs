@@ -36,7 +36,8 @@ impl Panel for Toolbar {
 }
 
 /// Submenus of View.
-const SUBMENUS: [(&str, Menu); 7] = [
+const SUBMENUS: [(&str, Menu); 8] = [
+    ("Look along", Menu::Sides),
     ("Split view", Menu::Split),
     ("Bookmarks", Menu::Bookmarks),
     ("Transform", Menu::Tool),
@@ -99,6 +100,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.menu_button("Panels", |ui| panels(state, ui));
+        *chosen = ui.menu_button("Shading", |ui| shading_entries(ui, state)).inner.flatten().or(*chosen);
         for (name, menu) in SUBMENUS {
             let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
             *chosen = inner.flatten().or(*chosen);
@@ -114,16 +116,14 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
             ("Select", Menu::Select),
             ("Paste only", Menu::PastePart),
             ("Combine", Menu::Combine),
-            ("Align and distribute", Menu::Arrange),
+            ("Arrange", Menu::Arrange),
+            ("Convert", Menu::Convert),
+            ("Links and materials", Menu::Sharing),
             ("Instancer presets", Menu::Presets),
         ] {
             let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
             *chosen = inner.flatten().or(*chosen);
         }
-    }
-    if menu == Menu::View {
-        ui.separator();
-        *chosen = shading_entries(ui, state).or(*chosen);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The tour: six steps through the window, each beside what it is about. It never stands in the way: the scene can be
 //! edited meanwhile.
 
-use egui::{Align, Align2, Area, Button, Context, Frame, Id, Key, Layout, Order, Rect, RichText, vec2};
+use egui::{Align, Align2, Area, Button, Context, Frame, Id, Layout, Order, Rect, RichText, vec2};
 
 use super::state::EditorState;
 use super::theme;
@@ -76,6 +76,11 @@ impl Tour {
         self.step = Some(0);
     }
 
+    /// Ends it; false if it has not begun.
+    pub fn end(&mut self) -> bool {
+        self.step.take().is_some()
+    }
+
     /// Shows the step.
     pub fn show(&mut self, state: &EditorState, ctx: &Context) {
         let Some(index) = self.step else { return };
@@ -120,10 +125,6 @@ impl Tour {
                 });
             });
         });
-        let is_typing = ctx.text_edit_focused();
-        if !is_typing && ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Escape)) {
-            next = None;
-        }
         self.step = next;
     }
 }

@@ -173,7 +173,10 @@ pub(super) fn inside(folder: &Path, relative: &str) -> Result<PathBuf, String> {
         }
     }
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let cannot = |e: std::io::Error| format!("“{shown}” cannot be opened: {e}");
+    let cannot = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => format!("“{shown}” is not there"),
+        _ => format!("“{shown}” cannot be opened: {e}"),
+    };
     let folder = folder.canonicalize().map_err(cannot)?;
     let file = folder.join(path).canonicalize().map_err(cannot)?;
     if !file.starts_with(&folder) {

@@ -43,7 +43,7 @@ pub use model_fields::{ModelFields, pose_of};
 use models::Models;
 pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};
-pub use packing::{has_unpacked, pack, unpack};
+pub use packing::{bring, has_unpacked, pack, unpack};
 pub use prepare::{PreparedScene, library_of};
 pub use render_order::{
     DEFAULT_SAMPLES, DEFAULT_SIZE, MAX_SAMPLES, MAX_SIDE, Moments, RenderOrder, RenderSettings, check_size, ending,
@@ -140,6 +140,11 @@ impl SceneSession {
     /// A node whose model cannot be read, and why.
     pub fn model_problem(&self) -> Option<&(NodeId, String)> {
         self.models.problem()
+    }
+
+    /// The nodes whose models cannot be read, and why.
+    pub fn model_problems(&self) -> impl Iterator<Item = (NodeId, String)> + '_ {
+        self.models.problems(self.flat())
     }
 
     /// Sets how many MiB the bricks of all models together may take.

@@ -153,9 +153,14 @@ impl Models {
         self.reading = Some(Reading { job, poses });
     }
 
-    fn find_problem(&self, flat: &FlatScene) -> Option<(NodeId, String)> {
+    /// The nodes whose models cannot be read, and why.
+    pub fn problems<'a>(&'a self, flat: &'a FlatScene) -> impl Iterator<Item = (NodeId, String)> + 'a {
         let error = |mesh: &FlatMesh| self.library.known(&mesh.model)?.as_ref().err().map(|e| (mesh.id, e.to_string()));
-        flat.meshes.iter().find_map(error)
+        flat.meshes.iter().filter_map(error)
+    }
+
+    fn find_problem(&self, flat: &FlatScene) -> Option<(NodeId, String)> {
+        self.problems(flat).next()
     }
 
     fn tell_what_is_not_drawn(&mut self, flat: &FlatScene) {

@@ -8,6 +8,11 @@ use isolith_jobs::{Canceled, Task};
 use isolith_mesh::{ModelFileTable, model_files};
 use isolith_scene::{NodeKind, PackedFiles, Scene, file};
 
+/// Where models from elsewhere are put.
+const MODELS: &str = "models";
+/// Most places that are tried if other files are in the way.
+const MOST_PLACES: usize = 9;
+
 /// The paths of the models that a scene names, each once.
 fn models(scene: &Scene) -> Vec<String> {
     let mut paths: Vec<String> = scene.model_requests().into_iter().map(|request| request.path).collect();
@@ -53,11 +58,40 @@ pub fn pack(scene: &Scene, folder: Option<&Path>, task: &Task) -> Result<PackedF
 /// # Errors
 /// A file stands in the way or cannot be written; the reason names it.
 pub fn unpack(scene: &Scene, folder: &Path, task: &Task) -> Result<Vec<PathBuf>, String> {
+    write_below(scene.packed.table(), folder, task)
+}
+
+/// Copies a model from elsewhere, with the files that it names, below the folder of a scene. Returns its path from there.
+///
+/// # Errors
+/// The model cannot be read or written; the reason names the file.
+pub fn bring(model: &Path, folder: &Path, task: &Task) -> Result<String, String> {
+    let name = model.file_name().map(|name| name.to_string_lossy().into_owned());
+    let (Some(name), Some(from)) = (name, model.parent()) else { return Err("names no file".into()) };
+    let files = model_files(from, &name).map_err(|error| error.to_string())?;
+    let stem = model.file_stem().unwrap_or_default().to_string_lossy();
+    // Other files of these names stay.
+    let places = std::iter::once(MODELS.to_owned()).chain((1..MOST_PLACES).map(|n| format!("{MODELS}/{stem}-{n}")));
+    let mut refusal = String::new();
+    for place in places {
+        let below = files.iter().map(|(name, bytes)| (format!("{place}/{name}"), bytes.clone())).collect();
+        match write_below(&below, folder, task) {
+            Ok(_) => return Ok(format!("{place}/{name}")),
+            Err(reason) => refusal = reason,
+        }
+        if task.is_canceled() {
+            break;
+        }
+    }
+    Err(refusal)
+}
+
+fn write_below(files: &ModelFileTable, folder: &Path, task: &Task) -> Result<Vec<PathBuf>, String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let failed = |path: &Path, error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let root = folder.canonicalize().map_err(|error| failed(folder, &error))?;
     let mut missing: Vec<(PathBuf, &Arc<[u8]>)> = Vec::new();
-    for (name, bytes) in scene.packed.table().iter() {
+    for (name, bytes) in files {
         let path = root.join(name);
         let there = path.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(&root);
         let there = there.canonicalize().map_err(|error| failed(there, &error))?;
@@ -66,7 +100,7 @@ pub fn unpack(scene: &Scene, folder: &Path, task: &Task) -> Result<Vec<PathBuf>,
         }
         match fs::read(&path) {
             Ok(there) if there == bytes[..] => {}
-            Ok(_) => return Err(failed(&path, &"is another file; nothing was unpacked")),
+            Ok(_) => return Err(failed(&path, &"is another file; nothing was written")),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => missing.push((path, bytes)),
             Err(error) => return Err(failed(&path, &error)),
         }

@@ -318,7 +318,7 @@ fn menus_fit_the_window_and_scroll() {
 fn a_menu_does_not_scroll_where_there_is_room_for_it() {
     let (scene, _) = scene();
     let mut harness = open_in(Document::new(scene), vec2(1280.0, 1650.0));
-    for (name, last) in [("Add", "Camera from view"), ("View", "Samples"), ("Edit", "Instancer presets")] {
+    for (name, last) in [("Add", "Camera from view"), ("View", "Field doctor…"), ("Edit", "Instancer presets")] {
         open_popup(&mut harness, name);
         let [menu] = popup_rects(&harness)[..] else { panic!("one menu") };
         let last = harness.get_by_label(last).rect();

@@ -66,7 +66,9 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     let center = "Moves the origin of the selected groups to the middle of what they hold";
     let bottom = "Moves the origin of the selected groups to the middle of the lower side of what they hold";
     let icon = ICON_FILTER_CENTER_FOCUS;
-    all.push(row(Command::MoveOrigin(OriginPlace::Center), icon, "Origin to the middle", center).when(has_group));
-    all.push(row(Command::MoveOrigin(OriginPlace::Bottom), icon, "Origin to the bottom", bottom).when(has_group));
+    let origin =
+        |place, label, help| row(Command::MoveOrigin(place), icon, label, help).when(has_group).within(Menu::Arrange);
+    all.push(origin(OriginPlace::Center, "Origin to the middle", center).group());
+    all.push(origin(OriginPlace::Bottom, "Origin to the bottom", bottom));
     all
 }

@@ -99,9 +99,12 @@ fn structure() -> Vec<CommandInfo> {
         on_selection(Command::Group, ICON_FOLDER, "Group", "Puts the selection into a group").key(CTRL, Key::G).group(),
         on_selection(Command::Ungroup, ICON_FOLDER_OFF, "Ungroup", "Takes the children out of the selected groups")
             .key(SHIFT_CTRL, Key::G),
-        on_selection(Command::MoveUp, ICON_ARROW_UPWARD, "Move up", up).key(Modifiers::ALT, Key::ArrowUp),
+        on_selection(Command::MoveUp, ICON_ARROW_UPWARD, "Move up", up)
+            .key(Modifiers::ALT, Key::ArrowUp)
+            .within(Menu::Arrange),
         on_selection(Command::MoveDown, ICON_ARROW_DOWNWARD, "Move down", "One place down among its siblings")
-            .key(Modifiers::ALT, Key::ArrowDown),
+            .key(Modifiers::ALT, Key::ArrowDown)
+            .within(Menu::Arrange),
     ]
 }
 
@@ -111,11 +114,13 @@ fn instancers() -> Vec<CommandInfo> {
     let mut all = vec![
         row(Command::InstanceSelection, ICON_GRID_ON, "Instancer from selection", types)
             .when(|state| can_instance(&state.session))
-            .group(),
-        row(Command::RerollSeeds, ICON_CASINO, "Re-roll seeds", seeds).when(|state| {
-            let document = &state.session.document;
-            seeds::unlocked(document.scene(), document.selection()).next().is_some()
-        }),
+            .within(Menu::Convert),
+        row(Command::RerollSeeds, ICON_CASINO, "Re-roll seeds", seeds)
+            .when(|state| {
+                let document = &state.session.document;
+                seeds::unlocked(document.scene(), document.selection()).next().is_some()
+            })
+            .within(Menu::Convert),
     ];
     all.push(
         row(
@@ -125,6 +130,7 @@ fn instancers() -> Vec<CommandInfo> {
             "Makes the selected meshes solids that blend and cut",
         )
         .when(|state| mesh_conversion::can_become_field(&state.session))
+        .within(Menu::Convert)
         .group(),
     );
     all.push(
@@ -134,7 +140,8 @@ fn instancers() -> Vec<CommandInfo> {
             "Convert to mesh",
             "Draws the selected mesh fields as triangles again",
         )
-        .when(|state| mesh_conversion::can_become_mesh(&state.session)),
+        .when(|state| mesh_conversion::can_become_mesh(&state.session))
+        .within(Menu::Convert),
     );
     all.extend(InstancerPreset::ALL.map(|preset| {
         let label = format!("Instancer preset: {}", preset.label().to_lowercase());
@@ -223,9 +230,10 @@ fn showing() -> Vec<CommandInfo> {
             .key(NONE, Key::L),
         on_selection(Command::Unlink, ICON_LINK_OFF, "Unlink", unlink)
             .when(|state| !linked_in_selection(&state.session).is_empty())
-            .group(),
-        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique),
-        CommandInfo::new(Menu::Edit, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
+            .within(Menu::Sharing),
+        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique)
+            .within(Menu::Sharing),
+        CommandInfo::new(Menu::Sharing, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
     ]
 }
 

@@ -27,14 +27,20 @@ pub enum Menu {
     Presets,
     /// Parts of a copied node; a submenu of Edit.
     PastePart,
-    /// Aligning and distributing; a submenu of Edit.
+    /// Aligning, distributing, origins and order; a submenu of Edit.
     Arrange,
+    /// Instancers, fields and meshes made of the selection; a submenu of Edit.
+    Convert,
+    /// Linked objects, shared and unused materials; a submenu of Edit.
+    Sharing,
     /// New nodes.
     Add,
     /// The camera and the picture.
     View,
-    /// Shadings; a part of View.
+    /// Shadings; a submenu of View.
     Shading,
+    /// Views along an axis; a submenu of View.
+    Sides,
     /// Views for debugging; a submenu of View.
     Debug,
     /// Samples per pixel; a submenu of View.

@@ -9,10 +9,13 @@ use super::command::Command;
 use crate::edit_session::EditSession;
 use crate::help::HelpTab;
 use crate::intent::Intent;
+use crate::keymap::Keymap;
 use crate::log_panel::LOG;
 use crate::root::Editor;
 use crate::snapping::{ANGLES, LENGTHS, SnapSettings};
 use crate::state::{EditorState, Request};
+use crate::transforms::kinds::TransformKind;
+use crate::view_state::PointerActivity;
 use crate::{
     arrange, camera_view, clipboard, dope_sheet, drawing, insertion, instancer_edits, keying, material_edits,
     mesh_conversion, pass_view, relations, seeds, selection,
@@ -88,14 +91,14 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Delete => selection::delete(session),
         Command::KeyTransform => keying::key_transforms(session),
         Command::Play => state.playback.toggle(&mut session.document),
-        Command::Group => selection::join(session, Operator::Union, true),
+        Command::Group => arrange::grouped(state, |session| selection::join(session, Operator::Union, true)),
         Command::Ungroup => selection::ungroup(session),
         Command::InstanceSelection => instance(session),
         Command::RerollSeeds => reroll(session),
         Command::ApplyPreset(preset) => instancer_edits::apply_preset(state, preset),
         Command::MoveUp => selection::shift(session, -1),
         Command::MoveDown => selection::shift(session, 1),
-        Command::Join(operator) => selection::join(session, operator, false),
+        Command::Join(operator) => arrange::grouped(state, |session| selection::join(session, operator, false)),
         Command::ToggleSubtract => selection::toggle_operation(session, Operation::Subtract),
         Command::ToggleIntersect => selection::toggle_operation(session, Operation::Intersect),
         Command::SelectAll | Command::SelectNothing | Command::SelectParents | Command::SelectChildren => {
@@ -182,8 +185,17 @@ fn models(state: &mut EditorState, command: Command) {
 
 fn duplicate(state: &mut EditorState, command: Command) {
     match command {
-        Command::Duplicate => selection::duplicate(&mut state.session),
-        Command::DuplicateLinked => selection::duplicate_linked(&mut state.session),
+        Command::Duplicate | Command::DuplicateLinked => {
+            if command == Command::Duplicate {
+                selection::duplicate(&mut state.session);
+            } else {
+                selection::duplicate_linked(&mut state.session);
+            }
+            // The copy lies in its original until it is moved: at once, by the keys of Blender.
+            if state.keymap() == Keymap::Blender && state.view.pointer == PointerActivity::Hovering {
+                state.view.transforming = Some(TransformKind::Move);
+            }
+        }
         Command::DuplicateAlong => relations::duplicate_along(state),
         _ => selection::unlink(&mut state.session),
     }

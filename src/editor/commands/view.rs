@@ -44,13 +44,13 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         ("Top view", Side::Top, NONE, Key::Num7),
         ("Bottom view", Side::Bottom, Modifiers::COMMAND, Key::Num7),
     ];
-    for (index, (label, side, modifiers, key)) in sides.into_iter().enumerate() {
+    for (label, side, modifiers, key) in sides {
         let help = "Looks along an axis of the world, in parallel until you orbit";
-        let info = CommandInfo::new(Menu::View, Command::LookFrom(side), None, label, help).key(modifiers, key);
-        all.push(if index == 0 { info.group() } else { info });
+        let info = CommandInfo::new(Menu::Sides, Command::LookFrom(side), None, label, help).key(modifiers, key);
+        all.push(info);
     }
-    let split =
-        "Viewports beside each other, each with a view and a shading of its own; keys mean the one under the pointer";
+    let split = "Splits the view: viewports beside each other, each with a view and a shading of its own; keys mean the one under the \
+         pointer";
     let views = [(1, "One view"), (2, "Two views"), (4, "Four views")];
     all.extend(views.map(|(count, label)| {
         let icon = if count == 1 { ICON_CROP_FREE } else { ICON_SPLITSCREEN };
