@@ -1,12 +1,14 @@
-// The twelve edges of a box: size a.xyz, width of the bars a.w.
+// The twelve edges of a box, as bars.
 //
 // Computed in the octant of positive coordinates, by symmetry. `inner` is the depth of the point
 // within the bars' width along each axis; bars that reach the middle have no inner side. A point is
 // in the solid where it is deep along two axes.
 
-fn sdf_box_frame(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let outer = abs(p) - 0.5 * a.xyz;
-    let inner = select(outer + a.w, vec3f(1e18), 0.5 * a.xyz <= vec3f(a.w));
+#include "generated/params/BoxFrameParams.wgsl"
+
+fn sdf_box_frame(p: vec3f, q: BoxFrameParams) -> f32 {
+    let outer = abs(p) - 0.5 * q.size;
+    let inner = select(outer + q.thickness, vec3f(1e18), 0.5 * q.size <= vec3f(q.thickness));
     // Distance, along each axis, to the width of a bar; 0 within it.
     let side = max(max(outer, -inner), vec3f(0.0));
     let along = max(outer, vec3f(0.0));

@@ -1,7 +1,8 @@
-// A cone along Y, cut at both ends: bottom radius a.x, top radius a.y, height a.z.
+// A cone along Y, cut at both ends.
 
+#include "generated/params/CappedConeParams.wgsl"
 #include "sdf/trapezoid.wgsl"
 
-fn sdf_capped_cone(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    return sdf_trapezoid(vec2f(length(p.xz), p.y), a.x, a.y, a.z);
+fn sdf_capped_cone(p: vec3f, q: CappedConeParams) -> f32 {
+    return sdf_trapezoid(vec2f(length(p.xz), p.y), q.bottom_radius, q.top_radius, q.height);
 }

@@ -1,9 +1,11 @@
-// An infinite cone that opens downward from its tip: sine and cosine of its half angle a.xy.
+// An infinite cone that opens downward from its tip.
 
-fn sdf_cone(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let q = vec2f(length(p.xz), p.y);
-    if dot(q, vec2f(a.x, -a.y)) > 0.0 {
-        return dot(q, a.yx);
+#include "generated/params/ConeParams.wgsl"
+
+fn sdf_cone(p: vec3f, q: ConeParams) -> f32 {
+    let at = vec2f(length(p.xz), p.y);
+    if dot(at, vec2f(q.half_angle.sine, -q.half_angle.cosine)) > 0.0 {
+        return dot(at, vec2f(q.half_angle.cosine, q.half_angle.sine));
     }
-    return length(q);
+    return length(at);
 }

@@ -1,4 +1,4 @@
-// An ellipsoid: half axes a.xyz.
+// An ellipsoid.
 //
 // The closest point is r² p / (t + r²) for the root t of |r p / (t + r²)| = 1. Newton's method on
 // the reciprocal of that length, nearly a straight line in t, climbs to the root from the left
@@ -8,18 +8,19 @@
 // n, for zero half axes too. At the best n the gradient is n itself, so n is detached. The half
 // axes are sorted first; points on the planes of symmetry are moved off them by 1e-7.
 
+#include "generated/params/EllipsoidParams.wgsl"
 #include "sdf/detach.wgsl"
 
-fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    var r = a.xyz;
-    var q = abs(p);
-    if r.x > r.y { r = r.yxz; q = q.yxz; }
-    if r.y > r.z { r = r.xzy; q = q.xzy; }
-    if r.x > r.y { r = r.yxz; q = q.yxz; }
-    let scale = detach_f32(max(max(r.z, max(q.x, max(q.y, q.z))), 1e-30));
+fn sdf_ellipsoid(p: vec3f, q: EllipsoidParams) -> f32 {
+    var r = q.radii;
+    var at = abs(p);
+    if r.x > r.y { r = r.yxz; at = at.yxz; }
+    if r.y > r.z { r = r.xzy; at = at.xzy; }
+    if r.x > r.y { r = r.yxz; at = at.yxz; }
+    let scale = detach_f32(max(max(r.z, max(at.x, max(at.y, at.z))), 1e-30));
     r /= scale;
-    q /= scale;
-    let off = detach_vec3(max(q, vec3f(1e-7)));
+    at /= scale;
+    let off = detach_vec3(max(at, vec3f(1e-7)));
     let gap = (r - r.x) * (r + r.x);
     let w = r * off;
     let least = max(max(w.x, max(w.y - gap.y, w.z - gap.z)), max(length(w) - gap.z, 1e-30));
@@ -31,7 +32,7 @@ fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     s = sdf_ellipsoid_step(s, least, w, gap);
     var n = off / (s + gap);
     n = normalize(n / max(n.x, max(n.y, n.z)));
-    return (dot(n, q) - length(r * n)) * scale;
+    return (dot(n, at) - length(r * n)) * scale;
 }
 
 // One step of Newton's method.

@@ -1,9 +1,9 @@
-// A solid heightfield over a rectangle: half width a.x, depth a.y, half length a.z, greatest height
-// a.w; b.x is 1 / sqrt(1 + L²) for the steepest slope L. The height above the surface times b.x is
+// A solid heightfield over a rectangle, from its greatest height `top` down to `depth` below 0.
+// `slope` is 1 / sqrt(1 + L²) for the steepest slope L: the height above the surface times it is
 // nowhere more than the distance to it.
 
-fn sdf_heightfield(p: vec3f, a: vec4f, b: vec4f, height: f32) -> f32 {
-    let d = vec3f(abs(p.x) - a.x, abs(p.y - 0.5 * (a.w - a.y)) - 0.5 * (a.w + a.y), abs(p.z) - a.z);
+fn sdf_heightfield(p: vec3f, height: f32, half: vec2f, depth: f32, top: f32, slope: f32) -> f32 {
+    let d = vec3f(abs(p.x) - half.x, abs(p.y - 0.5 * (top - depth)) - 0.5 * (top + depth), abs(p.z) - half.y);
     let outside = length(max(d, vec3f(0.0))) + min(max(d.x, max(d.y, d.z)), 0.0);
-    return max((p.y - height) * b.x, outside);
+    return max((p.y - height) * slope, outside);
 }

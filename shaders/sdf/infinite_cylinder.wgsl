@@ -1,5 +1,7 @@
-// An infinite cylinder along Y: radius a.x.
+// An infinite cylinder along Y.
 
-fn sdf_infinite_cylinder(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    return length(p.xz) - a.x;
+#include "generated/params/InfiniteCylinderParams.wgsl"
+
+fn sdf_infinite_cylinder(p: vec3f, q: InfiniteCylinderParams) -> f32 {
+    return length(p.xz) - q.radius;
 }

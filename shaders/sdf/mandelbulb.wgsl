@@ -1,7 +1,6 @@
-// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009): radius a.x
-// of the sphere that holds it, power n a.y, steps a.z. The set where iterating z -> P(z) + c, from
-// z = c on, does not leave the sphere of radius B = 2^(1/(n-1)), outside of which every step leads
-// farther out. P raises the distance from the center to the power n, and multiplies the angle from
+// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009) of a power n
+// within a sphere. The set where iterating z -> P(z) + c, from z = c on, does not leave the sphere
+// of radius B = 2^(1/(n-1)), outside of which every step leads farther out. P raises the distance from the center to the power n, and multiplies the angle from
 // the Y axis and the angle around it by n.
 //
 // The field is the radius of a sphere around the point that is certainly on one side (the idea:
@@ -12,15 +11,16 @@
 // axis; the code bounds that quotient by the lesser of n and 1 / sin a. This also yields the
 // spheres within such a sphere: the slope is at most 1.
 
+#include "generated/params/MandelbulbParams.wgsl"
 #include "sdf/detach.wgsl"
 
-fn sdf_mandelbulb(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let power = clamp(floor(a.y + 0.5), 2.0, 16.0);
+fn sdf_mandelbulb(p: vec3f, q: MandelbulbParams) -> f32 {
+    let power = clamp(floor(q.power + 0.5), 2.0, 16.0);
     let escape = exp2(1.0 / (power - 1.0));
     // This far out, the distance to the sphere is more than the bound from later steps:
     // (2r - B)^n >= 2 r^n.
     let reach = escape / (2.0 - exp2(1.0 / power));
-    let scale = max(a.x, 1e-9) / escape;
+    let scale = max(q.radius, 1e-9) / escape;
     let start = p / scale;
     var at = start;
     // Distances from the center and from the axis.
@@ -28,7 +28,7 @@ fn sdf_mandelbulb(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     var last = 0;
     loop {
         orbit[last] = vec2f(length(at), length(at.xz));
-        if last == 16 || f32(last) + 0.5 > a.z || orbit[last].x > reach {
+        if last == 16 || f32(last) + 0.5 > q.iterations || orbit[last].x > reach {
             break;
         }
         at = start + sdf_mandelbulb_power(at, orbit[last].y, u32(power));

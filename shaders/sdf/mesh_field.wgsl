@@ -20,7 +20,7 @@ const BRICK_COARSER: u32 = 0x20000000u;
 const TOLD_COARSER: f32 = 1e9;
 const LEVEL_ROWS: u32 = 3u;
 
-fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
+fn sdf_mesh_field(p: vec3f, data: u32) -> f32 {
     let head = scene_row(data + 1u);
     let levels = u32(head.x);
     var row = data + 4u;

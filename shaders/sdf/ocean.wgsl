@@ -1,16 +1,17 @@
-// An ocean: a heightfield of b.y waves, each with a second harmonic of half of b.z; see
-// `sdf_heightfield` for the rest. `data` is the first row, see `src/field/prepare/heightfield.rs`.
+// An ocean: a heightfield of waves, each with a second harmonic. `data` is the first row, see
+// `src/field/prepare/heightfield.rs`.
 
+#include "generated/params/OceanParams.wgsl"
 #include "sdf/heightfield.wgsl"
 
-fn sdf_ocean(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
+fn sdf_ocean(p: vec3f, q: OceanParams, data: u32) -> f32 {
     var height = 0.0;
-    for (var wave = 0u; wave < u32(b.y); wave += 1u) {
+    for (var wave = 0u; wave < q.waves; wave += 1u) {
         let row = scene_row(data + 1u + wave);
         let turns = dot(p.xz, row.xy) + row.w;
-        height += (sdf_ocean_cosine(turns) + 0.5 * b.z * sdf_ocean_cosine(2.0 * turns)) * row.z;
+        height += (sdf_ocean_cosine(turns) + 0.5 * q.harmonic * sdf_ocean_cosine(2.0 * turns)) * row.z;
     }
-    return sdf_heightfield(p, a, b, height);
+    return sdf_heightfield(p, height, q.half, q.depth, q.top, q.slope);
 }
 
 // The cosine of a number of turns, within 1e-7: a driver's own function may be less exact. Counts

@@ -1,5 +1,5 @@
 // The half space below the XZ plane.
 
-fn sdf_plane(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+fn sdf_plane(p: vec3f) -> f32 {
     return p.y;
 }

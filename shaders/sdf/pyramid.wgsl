@@ -1,17 +1,18 @@
-// A pyramid over a square: width a.x, height a.y.
+// A pyramid over a square.
 //
 // Computed in the sector of the face toward +X, where |z| < x, by symmetry. Outside: the nearer of
 // face and square, each in its own plane. Inside: the nearer of the planes.
 
+#include "generated/params/PyramidParams.wgsl"
 #include "sdf/trapezoid.wgsl"
 
-fn sdf_pyramid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let half_width = 0.5 * a.x;
+fn sdf_pyramid(p: vec3f, q: PyramidParams) -> f32 {
+    let half_width = 0.5 * q.width;
     let x = max(abs(p.x), abs(p.z));
     let z = min(abs(p.x), abs(p.z));
-    let from_edge = vec2f(x - half_width, p.y + 0.5 * a.y);
-    let slope = length(vec2f(half_width, a.y));
-    let up = select(vec2f(0.0, 1.0), vec2f(-half_width, a.y) / max(slope, 1e-30), slope > 0.0);
+    let from_edge = vec2f(x - half_width, p.y + 0.5 * q.height);
+    let slope = length(vec2f(half_width, q.height));
+    let up = select(vec2f(0.0, 1.0), vec2f(-half_width, q.height) / max(slope, 1e-30), slope > 0.0);
     let over = dot(from_edge, vec2f(up.y, -up.x));
     if over < 0.0 && from_edge.y > 0.0 {
         return max(over, -from_edge.y);

@@ -1,18 +1,21 @@
-// The part of a sphere within an angle around Y: radius a.x, sine and cosine of the angle a.yz.
+// The part of a sphere within an angle around Y.
 
-fn sdf_solid_angle(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let q = vec2f(length(p.xz), p.y);
-    let along = dot(q, a.yz);
-    let across = dot(q, vec2f(a.z, -a.y));
-    let far = length(q);
+#include "generated/params/SolidAngleParams.wgsl"
+
+fn sdf_solid_angle(p: vec3f, q: SolidAngleParams) -> f32 {
+    let at = vec2f(length(p.xz), p.y);
+    let side = vec2f(q.half_angle.sine, q.half_angle.cosine);
+    let along = dot(at, side);
+    let across = dot(at, vec2f(side.y, -side.x));
+    let far = length(at);
     var to_side = abs(across);
     if along <= 0.0 {
         to_side = far;
-    } else if along >= a.x {
-        to_side = length(q - a.x * a.yz);
+    } else if along >= q.radius {
+        to_side = length(at - q.radius * side);
     }
     if across >= 0.0 {
         return to_side;
     }
-    return max(far - a.x, -to_side);
+    return max(far - q.radius, -to_side);
 }

@@ -1,5 +1,7 @@
-// A sphere: radius a.x.
+// A sphere.
 
-fn sdf_sphere(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    return length(p) - a.x;
+#include "generated/params/SphereParams.wgsl"
+
+fn sdf_sphere(p: vec3f, q: SphereParams) -> f32 {
+    return length(p) - q.radius;
 }

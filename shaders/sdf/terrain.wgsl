@@ -1,15 +1,16 @@
-// Hills: a heightfield of b.y layers of noise with the seed b.z; see `sdf_heightfield` for the
-// rest. `data` is the first row, see `src/field/prepare/heightfield.rs`.
+// Hills: a heightfield of layers of noise. `data` is the first row, see
+// `src/field/prepare/heightfield.rs`.
 
+#include "generated/params/TerrainParams.wgsl"
 #include "sdf/heightfield.wgsl"
 
-fn sdf_terrain(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
+fn sdf_terrain(p: vec3f, q: TerrainParams, data: u32) -> f32 {
     var height = 0.0;
-    for (var layer = 0u; layer < u32(b.y); layer += 1u) {
+    for (var layer = 0u; layer < q.layers; layer += 1u) {
         let row = scene_row(data + 1u + layer);
-        height += sdf_terrain_noise(p.xz * row.x, u32(b.z), u32(row.z)) * row.y;
+        height += sdf_terrain_noise(p.xz * row.x, q.seed, u32(row.z)) * row.y;
     }
-    return sdf_heightfield(p, a, b, height);
+    return sdf_heightfield(p, height, q.half, q.depth, q.top, q.slope);
 }
 
 // Smooth noise between -1 and 1: random numbers at whole coordinates, interpolated by t² (3 - 2 t)

@@ -1,9 +1,9 @@
-// A text: its profiles extruded, as in `sdf_extrusion`. A function of its own, since each shape has
-// its own gradient.
+// A text: its profiles extruded, as in `sdf_extrusion`; overlaps are inside.
 
+#include "generated/params/TextParams.wgsl"
 #include "sdf/profile.wgsl"
 
-fn sdf_text(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let d = vec2f(sdf_profile(p.xy, u32(a.x), a.y != 0.0, data), abs(p.z) - a.z) + a.w;
-    return length(max(d, vec2f(0.0))) + min(max(d.x, d.y), 0.0) - a.w;
+fn sdf_text(p: vec3f, q: TextParams, data: u32) -> f32 {
+    let d = vec2f(sdf_profile(p.xy, q.groups, true, data), abs(p.z) - q.half_depth) + q.rounding;
+    return length(max(d, vec2f(0.0))) + min(max(d.x, d.y), 0.0) - q.rounding;
 }

@@ -1,16 +1,16 @@
-// A tube: spheres along arcs. a.x pieces in a.y groups; `data` is its first row, see
-// `src/field/prepare/tube.rs`.
+// A tube: spheres along arcs. `data` is its first row, see `src/field/prepare/tube.rs`.
 //
 // The field is the least of |p - c| - r over its spheres. Around the nearest sphere, a change of
 // the sphere changes the field only by its square. So the gradient is that of the sphere alone, and
 // the search for it is detached.
 
+#include "generated/params/TubeParams.wgsl"
 #include "sdf/detach.wgsl"
 
 const TUBE_GROUP: u32 = 8u;
 
-fn sdf_tube(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let ball = detach_vec4(sdf_tube_nearest(p, u32(a.x), u32(a.y), data + 1u));
+fn sdf_tube(p: vec3f, q: TubeParams, data: u32) -> f32 {
+    let ball = detach_vec4(sdf_tube_nearest(p, q.pieces, q.groups, data + 1u));
     return length(p - ball.xyz) - ball.w;
 }
 

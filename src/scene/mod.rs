@@ -33,6 +33,7 @@ mod empty_set;
 mod environment;
 mod environment_image;
 mod error;
+mod eval_params;
 pub mod file;
 mod heights;
 mod image_budget;
@@ -74,6 +75,9 @@ pub use empty_set::EmptyOperandResult;
 pub use environment::{Environment, EnvironmentKind};
 pub use environment_image::EnvironmentImage;
 pub use error::SceneError;
+pub use eval_params::{
+    EvalMember, EvalParams, EvalValue, MAX_MEMBERS, MemberType, ParamLayout, PolygonSides, SineCosine,
+};
 pub use heights::Heights;
 pub use instancer::{
     Instancer, Lattice, LatticeKind, MAX_MASKS, MAX_PALETTE, MAX_TYPES, Mask, MaskJoin, MaskKind, MaskSlot,
@@ -98,7 +102,7 @@ pub use params::{
 pub use presets::material_presets;
 pub use response_curve::{CurvePreset, MAX_CURVE_POINTS, MIN_CURVE_GAP, MIN_CURVE_POINTS, ResponseCurve};
 pub use shadowing::Shadowing;
-pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
+pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides, shape_params};
 pub use table::Scene;
 pub use texture::{NormalTexture, TextureSpace, Textures};
 pub use texture_image::{MAX_SHARES, Pyramid, ShareImage, TexelForm, TexelLevel, TextureImage};

@@ -2,14 +2,16 @@
 //! inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
 //! To add one: an entry here, its bounds in `shape/extent.rs`, `sdf_name` in `field/eval/sdf/` and in `shaders/sdf/`.
-//! `CONTRIBUTING.md` shows an example. A shape `with data` is evaluated from a payload that `field::PreparedShape`
-//! derives from its parameters.
+//! `CONTRIBUTING.md` shows an example. Both functions get the parameters as a struct `NameParams`, with the names of
+//! the table. A shape `with data` is evaluated from a payload that `field::PreparedShape` derives from its parameters;
+//! what its struct has stands behind `data`.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::attachment::Attachment;
 use super::drawn::{Corners, Points};
+use super::eval_params::{EvalParams, ParamLayout};
 use super::heights::Heights;
 use super::limits::{
     ARC, CLIP_NAME_LENGTH, CLIP_TIME, CONE, CONSTANT, FOLD, FREQUENCY, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES,
@@ -30,43 +32,40 @@ mod tests;
 use packed::Packed;
 pub use packed::{Degrees, SHAPE_FLOATS, Sides};
 
-/// Rows of the parameters of a shape with data.
-const DATA_PARAMETER_ROWS: usize = 2;
-
 shapes! {
     /// A ball.
-    Sphere = sdf_sphere, "Sphere" {
+    Sphere = sdf_sphere(SphereParams), "Sphere" {
         /// Distance from the center to the surface.
         radius: f64 = 0.5, SIZE;
     }
     /// A ball stretched along its axes; exact distance.
-    Ellipsoid = sdf_ellipsoid, "Ellipsoid" {
+    Ellipsoid = sdf_ellipsoid(EllipsoidParams), "Ellipsoid" {
         /// Half axes along X, Y and Z.
         radii: [f64; 3] = [0.7, 0.4, 0.5], SIZE;
     }
     /// A cuboid, its edges rounded inward so that its size stays.
-    Box = sdf_box, "Box" {
+    Box = sdf_box(BoxParams), "Box" {
         /// Edge lengths.
         size: [f64; 3] = [1.0; 3], SIZE;
         /// Radius of the edges; at most half the shortest edge takes effect.
         rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// The twelve edges of a cuboid, as bars.
-    BoxFrame = sdf_box_frame, "Box frame" {
+    BoxFrame = sdf_box_frame(BoxFrameParams), "Box frame" {
         /// Outer edge lengths.
         size: [f64; 3] = [1.0; 3], SIZE;
         /// Width of the bars.
         thickness: f64 = 0.1, THICKNESS;
     }
     /// A ring around the Y axis.
-    Torus = sdf_torus, "Torus" {
+    Torus = sdf_torus(TorusParams), "Torus" {
         /// From the axis to the middle of the tube.
         major_radius: f64 = 0.5, SIZE;
         /// Of the tube.
         minor_radius: f64 = 0.15, SIZE;
     }
     /// A cylinder along the Y axis, its edges rounded inward.
-    Cylinder = sdf_cylinder, "Cylinder" {
+    Cylinder = sdf_cylinder(CylinderParams), "Cylinder" {
         /// From the axis to the side.
         radius: f64 = 0.5, SIZE;
         /// From cap to cap.
@@ -75,7 +74,7 @@ shapes! {
         rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A cone along the Y axis, cut flat at both ends.
-    CappedCone = sdf_capped_cone, "Truncated cone" {
+    CappedCone = sdf_capped_cone(CappedConeParams), "Truncated cone" {
         /// Radius of the lower cap.
         bottom_radius: f64 = 0.5, SIZE;
         /// Radius of the upper cap.
@@ -84,7 +83,7 @@ shapes! {
         height: f64 = 1.0, SIZE;
     }
     /// The hull of two balls on the Y axis.
-    RoundCone = sdf_round_cone, "Round cone" {
+    RoundCone = sdf_round_cone(RoundConeParams), "Round cone" {
         /// Radius of the lower ball, whose center is the lower end.
         bottom_radius: f64 = 0.4, SIZE;
         /// Radius of the upper ball.
@@ -93,7 +92,7 @@ shapes! {
         height: f64 = 0.8, SIZE;
     }
     /// Everything within a distance of a segment.
-    Capsule = sdf_capsule, "Capsule" {
+    Capsule = sdf_capsule(CapsuleParams), "Capsule" {
         /// One end of the segment.
         start: [f64; 3] = [0.0, -0.4, 0.0], POSITION;
         /// The other end.
@@ -102,21 +101,21 @@ shapes! {
         radius: f64 = 0.25, SIZE;
     }
     /// Everything below the XZ plane; has no end.
-    Plane = sdf_plane, "Plane (half space)" {}
+    Plane = sdf_plane(PlaneParams), "Plane (half space)" {}
     /// A hexagonal prism along the Y axis.
-    HexagonalPrism = sdf_hexagonal_prism, "Hexagonal prism" {
+    HexagonalPrism = sdf_hexagonal_prism(HexagonalPrismParams), "Hexagonal prism" {
         /// From the axis to the middle of a side; two sides face along X.
         radius: f64 = 0.5, SIZE;
         /// From cap to cap.
         height: f64 = 0.5, SIZE;
     }
     /// A regular octahedron with its corners on the axes.
-    Octahedron = sdf_octahedron, "Octahedron" {
+    Octahedron = sdf_octahedron(OctahedronParams), "Octahedron" {
         /// From the center to a corner.
         radius: f64 = 0.6, SIZE;
     }
     /// A ring of which only an arc is left, with round ends.
-    CappedTorus = sdf_capped_torus, "Capped torus" {
+    CappedTorus = sdf_capped_torus(CappedTorusParams), "Capped torus" {
         /// From the axis to the middle of the tube.
         major_radius: f64 = 0.5, SIZE;
         /// Of the tube.
@@ -125,7 +124,7 @@ shapes! {
         half_angle: Degrees = Degrees(120.0), ARC;
     }
     /// A link of a chain: a ring around the Y axis, pulled apart along X.
-    Link = sdf_link, "Chain link" {
+    Link = sdf_link(LinkParams), "Chain link" {
         /// Of the straight part.
         length: f64 = 0.5, SIZE;
         /// From the middle of a bend to the middle of the tube.
@@ -134,17 +133,17 @@ shapes! {
         minor_radius: f64 = 0.1, SIZE;
     }
     /// A cone that opens downward from its tip at the origin; has no end.
-    Cone = sdf_cone, "Infinite cone" {
+    Cone = sdf_cone(ConeParams), "Infinite cone" {
         /// Between the axis and the side.
         half_angle: Degrees = Degrees(30.0), CONE;
     }
     /// A cylinder along the Y axis; has no ends.
-    InfiniteCylinder = sdf_infinite_cylinder, "Infinite cylinder" {
+    InfiniteCylinder = sdf_infinite_cylinder(InfiniteCylinderParams), "Infinite cylinder" {
         /// From the axis to the side.
         radius: f64 = 0.35, SIZE;
     }
     /// A prism along the Y axis over an isosceles triangle.
-    TriangularPrism = sdf_triangular_prism, "Triangular prism" {
+    TriangularPrism = sdf_triangular_prism(TriangularPrismParams), "Triangular prism" {
         /// Of the side along X, which lies toward -Z.
         width: f64 = 1.0, SIZE;
         /// From that side to the corner, along Z.
@@ -153,7 +152,7 @@ shapes! {
         height: f64 = 0.6, SIZE;
     }
     /// A prism along the Y axis over a regular polygon, its edges rounded inward.
-    Prism = sdf_prism, "Prism" {
+    Prism = sdf_prism(PrismParams), "Prism" {
         /// Of the polygon; a whole number.
         sides: Sides = Sides(5.0), SIDES;
         /// From the axis to the middle of a side; one of them faces along X.
@@ -164,14 +163,14 @@ shapes! {
         rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A pyramid over a square, its tip on the Y axis.
-    Pyramid = sdf_pyramid, "Pyramid" {
+    Pyramid = sdf_pyramid(PyramidParams), "Pyramid" {
         /// Edge length of the square.
         width: f64 = 1.1, SIZE;
         /// From the square to the tip; the origin is half-way.
         height: f64 = 0.9, SIZE;
     }
     /// A prism along the Y axis over a rhombus with its corners on X and Z, its edges rounded inward.
-    Rhombus = sdf_rhombus, "Rhombus" {
+    Rhombus = sdf_rhombus(RhombusParams), "Rhombus" {
         /// From corner to corner along X.
         width: f64 = 1.2, SIZE;
         /// From corner to corner along Z.
@@ -182,14 +181,14 @@ shapes! {
         rounding: f64 = 0.06, THICKNESS.labeled("Bevel");
     }
     /// A ball cut flat; what is above the cut stays.
-    CutSphere = sdf_cut_sphere, "Dome" {
+    CutSphere = sdf_cut_sphere(CutSphereParams), "Dome" {
         /// Of the ball.
         radius: f64 = 0.6, SIZE;
         /// Height of the cut over the ball's center, within the ball.
         cut: f64 = -0.1, POSITION;
     }
     /// A bowl: the skin of a ball, cut open above, with a round rim.
-    HollowCutSphere = sdf_hollow_cut_sphere, "Bowl" {
+    HollowCutSphere = sdf_hollow_cut_sphere(HollowCutSphereParams), "Bowl" {
         /// Of the ball, to the middle of the skin.
         radius: f64 = 0.55, SIZE;
         /// Height of the cut over the ball's center, within the ball.
@@ -198,7 +197,7 @@ shapes! {
         thickness: f64 = 0.1, THICKNESS;
     }
     /// A ball out of which another ball above it is cut.
-    DeathStar = sdf_death_star, "Death star" {
+    DeathStar = sdf_death_star(DeathStarParams), "Death star" {
         /// Of the ball.
         radius: f64 = 0.6, SIZE;
         /// Of the ball that is cut out; never takes all.
@@ -207,21 +206,21 @@ shapes! {
         distance: f64 = 0.7, SIZE;
     }
     /// The part of a ball within an angle around the Y axis.
-    SolidAngle = sdf_solid_angle, "Solid angle" {
+    SolidAngle = sdf_solid_angle(SolidAngleParams), "Solid angle" {
         /// Of the ball.
         radius: f64 = 0.9, SIZE;
         /// Between the axis and the side.
         half_angle: Degrees = Degrees(35.0), SECTOR;
     }
     /// A spindle along the Y axis: an arc turned about its chord.
-    Vesica = sdf_vesica, "Spindle" {
+    Vesica = sdf_vesica(VesicaParams), "Spindle" {
         /// From tip to tip.
         height: f64 = 1.3, SIZE;
         /// Where it is thickest; at most the height takes effect.
         width: f64 = 0.7, SIZE;
     }
     /// A triangle in the XZ plane, with a thickness and round edges.
-    Triangle = sdf_triangle, "Triangle" {
+    Triangle = sdf_triangle(TriangleParams), "Triangle" {
         /// Of the side along X, which lies toward -Z.
         width: f64 = 1.1, SIZE;
         /// From that side to the corner, along Z.
@@ -232,7 +231,7 @@ shapes! {
         thickness: f64 = 0.08, THICKNESS;
     }
     /// A rectangle or parallelogram in the XZ plane, with a thickness and round edges.
-    Quad = sdf_quad, "Quad" {
+    Quad = sdf_quad(QuadParams), "Quad" {
         /// Of the sides along X.
         width: f64 = 1.0, SIZE;
         /// Between these sides, along Z.
@@ -243,7 +242,7 @@ shapes! {
         thickness: f64 = 0.08, THICKNESS;
     }
     /// A prism along the Y axis over a star, its edges rounded inward.
-    Star = sdf_star, "Star" {
+    Star = sdf_star(StarParams), "Star" {
         /// Points of the star, one of them on X; a whole number.
         points: Sides = Sides(5.0), SIDES;
         /// From the axis to a point.
@@ -256,7 +255,7 @@ shapes! {
         rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A ring around the Y axis with a regular polygon as its section.
-    PolygonRing = sdf_polygon_ring, "Polygon ring" {
+    PolygonRing = sdf_polygon_ring(PolygonRingParams), "Polygon ring" {
         /// Of the polygon; a whole number.
         sides: Sides = Sides(6.0), SIDES;
         /// From the axis to the middle of the polygon.
@@ -265,14 +264,14 @@ shapes! {
         minor_radius: f64 = 0.14, SIZE;
     }
     /// A cube with square holes, in each of its parts again.
-    MengerSponge = sdf_menger_sponge, "Menger sponge" {
+    MengerSponge = sdf_menger_sponge(MengerSpongeParams), "Menger sponge" {
         /// Edge length.
         size: f64 = 1.0, SIZE;
         /// How often holes are made, each time a third as wide; a whole number.
         iterations: f64 = 3.0, ITERATIONS;
     }
     /// A Julia set of quaternions: where z² + c, repeated, stays near.
-    Julia = sdf_julia, "Julia set" {
+    Julia = sdf_julia(JuliaParams), "Julia set" {
         /// Of the ball that holds it.
         radius: f64 = 0.8, SIZE;
         /// The first three numbers of the quaternion c.
@@ -283,7 +282,7 @@ shapes! {
         iterations: f64 = 9.0, SQUARES;
     }
     /// A pseudo-Kleinian set: folded at a box and turned inside out, again and again.
-    Kleinian = sdf_kleinian, "Kleinian set" {
+    Kleinian = sdf_kleinian(KleinianParams), "Kleinian set" {
         /// Of the ball that holds it.
         radius: f64 = 0.8, SIZE;
         /// How much of the set the ball shows: its radius in the set's own unit.
@@ -298,7 +297,7 @@ shapes! {
         iterations: f64 = 4.0, ITERATIONS;
     }
     /// A Mandelbulb: where zⁿ + c, repeated from c on, stays near; a power of angles and distances.
-    Mandelbulb = sdf_mandelbulb, "Mandelbulb" {
+    Mandelbulb = sdf_mandelbulb(MandelbulbParams), "Mandelbulb" {
         /// Of the ball that holds it.
         radius: f64 = 0.7, SIZE;
         /// The power n: one more than the number of large bulbs around the axis; a whole number.
@@ -307,7 +306,12 @@ shapes! {
         iterations: f64 = 2.0, SQUARES;
     }
     /// A round tube along a smooth curve through points; its ends are balls.
-    Tube = sdf_tube with data, "Curve tube" {
+    Tube = sdf_tube(TubeParams) with data {
+        /// Pieces of the curve.
+        pieces: u32,
+        /// Groups of pieces, each with a ball around it.
+        groups: u32,
+    }, "Curve tube" {
         /// Points of the curve, each with a radius.
         points: Points = Points::new([[-0.6, -0.2, 0.0, 0.0], [-0.2, 0.25, 0.15, 0.0], [0.2, -0.25, -0.15, 0.0], [0.6, 0.2, 0.0, 0.0]]), POSITION;
         /// Added to the radius of each point.
@@ -316,7 +320,14 @@ shapes! {
         closed: bool = false, NO_LIMITS;
     }
     /// A drawn profile in the XY plane, as thick as its depth along Z.
-    Extrusion = sdf_extrusion with data, "Extrusion" {
+    Extrusion = sdf_extrusion(ExtrusionParams) with data {
+        /// Groups of pieces of the profile, each with a box around it.
+        groups: u32,
+        /// Half the thickness.
+        half_depth: f64,
+        /// Radius of the edges, at most half the thickness.
+        rounding: f64,
+    }, "Extrusion" {
         /// Corners of the profile; the last is joined to the first.
         corners: Corners = Corners::star(5, 0.6, 0.28), POSITION;
         /// Whether the profile is a smooth curve through the corners.
@@ -327,7 +338,10 @@ shapes! {
         rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A drawn profile in the XY plane, turned around the Y axis; what lies on the other side of the axis is left out.
-    Revolution = sdf_revolution with data, "Lathe" {
+    Revolution = sdf_revolution(RevolutionParams) with data {
+        /// Groups of pieces of the profile, each with a box around it.
+        groups: u32,
+    }, "Lathe" {
         /// Corners of the profile; the last is joined to the first.
         corners: Corners = Corners::vase(), POSITION;
         /// Whether the profile is a smooth curve through the corners.
@@ -336,7 +350,14 @@ shapes! {
         offset: f64 = 0.0, POSITION;
     }
     /// A text of solid letters in the XY plane, as thick as its depth along Z.
-    Text = sdf_text with data, "Text" {
+    Text = sdf_text(TextParams) with data {
+        /// Groups of pieces of the letters, each with a box around it.
+        groups: u32,
+        /// Half the thickness.
+        half_depth: f64,
+        /// Radius of the edges, at most half the thickness.
+        rounding: f64,
+    }, "Text" {
         /// What is written; `\n` begins a line.
         text: String = "Text".to_owned(), LETTERS;
         /// The font; letters that it does not have come from the editor's.
@@ -350,7 +371,20 @@ shapes! {
         rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// Hills: fractal noise over a rectangle, solid down to a flat bottom.
-    Terrain = sdf_terrain with data, "Terrain" {
+    Terrain = sdf_terrain(TerrainParams) with data {
+        /// Half the width and half the length.
+        half: [f64; 2],
+        /// From the mean height down to the bottom.
+        depth: f64,
+        /// Greatest height.
+        top: f64,
+        /// One over √(1 + L²) for the steepest slope L.
+        slope: f64,
+        /// Layers of noise, one a row.
+        layers: u32,
+        /// Another number, another landscape.
+        seed: u32,
+    }, "Terrain" {
         /// Width, depth of the ground below the mean height, length.
         size: [f64; 3] = [2.0, 0.4, 2.0], SIZE;
         /// Greatest height above and below the mean.
@@ -365,7 +399,18 @@ shapes! {
         seed: f64 = 1.0, SEED;
     }
     /// A landscape from an image, the brighter the higher; solid down to a flat bottom.
-    Heightmap = sdf_heightmap with data, "Heightmap" {
+    Heightmap = sdf_heightmap(HeightmapParams) with data {
+        /// Half the width and half the length.
+        half: [f64; 2],
+        /// From the mean height down to the bottom.
+        depth: f64,
+        /// Greatest height.
+        top: f64,
+        /// One over √(1 + L²) for the steepest slope L.
+        slope: f64,
+        /// Columns and lines of heights, one a row.
+        cells: [f64; 2],
+    }, "Heightmap" {
         /// Its pixels are heights; an image larger than 256 pixels is made smaller.
         #[serde(default)]
         image: Attachment<Heights> = Attachment::NONE, NO_LIMITS;
@@ -375,7 +420,20 @@ shapes! {
         height: f64 = 0.7, SIZE;
     }
     /// Water with waves over a rectangle, solid down to a flat bottom.
-    Ocean = sdf_ocean with data, "Ocean" {
+    Ocean = sdf_ocean(OceanParams) with data {
+        /// Half the width and half the length.
+        half: [f64; 2],
+        /// From the mean height down to the bottom.
+        depth: f64,
+        /// Greatest height.
+        top: f64,
+        /// One over √(1 + L²) for the steepest slope L.
+        slope: f64,
+        /// Waves, one a row.
+        waves: u32,
+        /// Twice the height of the second harmonic of each wave, over that of the wave.
+        harmonic: f64,
+    }, "Ocean" {
         /// Width, depth of the water, length.
         size: [f64; 3] = [2.0, 0.3, 2.0], SIZE;
         /// Height of the waves above and below the mean, all together.
@@ -397,7 +455,7 @@ shapes! {
         speed: f64 = 0.0, FREQUENCY;
     }
     /// The solid of a glTF model, as distances in voxels.
-    MeshField = sdf_mesh_field with data, "Mesh field" {
+    MeshField = sdf_mesh_field(MeshFieldParams) with data {}, "Mesh field" {
         /// A .gltf or .glb file, relative to the scene's folder.
         #[serde(default)]
         file: ModelFile = ModelFile::default(), OPTIONAL_PATH_LENGTH;

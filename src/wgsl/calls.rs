@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use super::op_set::OpSet;
 use super::options::SkipMode;
+use super::params::{built, load_include, loaded};
 use super::structure::{ShapeSet, StructureEntry};
 use isolith_field::{LEAF_ROWS, payload_row};
 use isolith_scene::ShapeKind;
@@ -24,7 +25,7 @@ pub fn gradient_include(kind: ShapeKind) -> String {
 pub fn shapes_wgsl(ops: &OpSet) -> String {
     let mut out = String::new();
     for kind in &ops.shapes {
-        writeln!(out, "{}", shape_include(*kind)).expect("strings take all");
+        writeln!(out, "{}\n{}", shape_include(*kind), load_include(&kind.eval_layout())).expect("strings take all");
     }
     writeln!(out, "const STACK_SIZE: u32 = {}u;", ops.stack).expect("strings take all");
     let call = |kind: ShapeKind| format!("{}({})", kind.function(), read_rows(kind));
@@ -36,7 +37,7 @@ pub fn shapes_wgsl(ops: &OpSet) -> String {
 pub fn gradients_wgsl(ops: &OpSet) -> String {
     let mut out = String::new();
     for kind in &ops.shapes {
-        writeln!(out, "{}", gradient_include(*kind)).expect("strings take all");
+        writeln!(out, "{}\n{}", gradient_include(*kind), load_include(&kind.eval_layout())).expect("strings take all");
     }
     let call = |kind: ShapeKind| format!("dual_{}({})", kind.function(), read_rows(kind));
     choice(&mut out, &ops.shapes, "shape_gradient", ["vec4f", "vec4f(0.0)"], &call);
@@ -59,13 +60,12 @@ fn choice(
     writeln!(out, "        default: {{ return {nothing}; }}\n    }}\n}}").expect("strings take all");
 }
 
-/// The arguments of a shape's function, which reads its parameters from their rows, and the start of its payload rows.
+/// The arguments of a shape's function: the point, the parameters, read from their rows, and the start of its payload
+/// rows.
 fn read_rows(kind: ShapeKind) -> String {
-    let parameters = kind.parameter_rows();
-    let row = |i: usize| if i < parameters { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
     let data = |at: usize| format!(", row + {at}u + u32(scene_row(row + {at}u).y)");
     let data = payload_row(kind).map_or(String::new(), |at| data(at - LEAF_ROWS));
-    format!("p, {}, {}{data}", row(0), row(1))
+    format!("p{}{data}", loaded(&kind.eval_layout(), "row"))
 }
 
 /// Sets `{name}{at}` to the result of `call` for the shape whose code is in the row.
@@ -92,12 +92,9 @@ pub fn select_by_shape(
 /// The point in the leaf's own space, the parameters of its shape, and the start of its payload rows.
 pub fn arguments(point: &str, entry: &StructureEntry, shape: ShapeKind, row: usize) -> String {
     let placed = if entry.moved { "placed_moved" } else { "placed" };
-    let parameter = |i: usize| {
-        if i < shape.parameter_rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
-    };
-    let (a, b) = (parameter(0), parameter(1));
+    let params = built(&shape.eval_layout(), &|i| format!("q{}", row + LEAF_ROWS + i));
     let data = payload_row(shape).map_or(String::new(), |i| format!(", {}", data_argument(row + i)));
-    format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
+    format!("{placed}({point}, q{}, q{}, q{}){params}{data}", row + 1, row + 2, row + 3)
 }
 
 /// The first payload row, whose place is in the component's row `at`.

@@ -25,6 +25,8 @@ use naga::{Expression, Function, Handle, MathFunction, Module};
 use activity::Activity;
 pub use error::DualError;
 use tangent_writer::TangentWriter;
+#[cfg(test)]
+pub(crate) use tests::Machine;
 
 /// Prelude of dual functions, needed once before the first: values with their derivatives along x, y and z.
 pub const DUAL_PRELUDE: &str = "

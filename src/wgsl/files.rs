@@ -7,6 +7,7 @@ use std::path::Path;
 use thiserror::Error;
 
 use super::disk;
+use super::params::params_file;
 
 /// Every file of `shaders/`, by its path there.
 pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
@@ -36,8 +37,8 @@ pub enum ShaderError {
     },
 }
 
-/// The text of `entry` with all its includes, each file once, before its first user. It may not include generated
-/// files.
+/// The text of `entry` with all its includes, each file once, before its first user. Of generated files it may include
+/// those of parameters only.
 pub fn library(entry: &str) -> Result<String, ShaderError> {
     resolve(entry, &[], &|_| None)
 }
@@ -66,7 +67,7 @@ impl Resolver<'_> {
         if !self.seen.insert(name.to_owned()) {
             return Ok(());
         }
-        let mut generated = (self.generated)(name);
+        let mut generated = (self.generated)(name).or_else(|| params_file(name));
         if let Some(text) = generated.as_mut().filter(|_| name.starts_with("generated/dual/")) {
             // The texts of several shapes may contain the dual function of the same function; write it once.
             let fresh = text.split("\n\n").filter(|part| self.seen.insert((*part).trim_end().to_owned()));

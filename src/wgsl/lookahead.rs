@@ -131,6 +131,8 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use isolith_field::eval::shape_distance;
+    use isolith_scene::EvalParams as _;
+    use isolith_scene::shape_params::TorusParams;
 
     /// The largest distance by which the middle of a chord lies below the field, over random chords of `kind` with
     /// default parameters, minus the allowance of a concavity within the chord's length of the first end.
@@ -162,10 +164,11 @@ mod tests {
     /// The counterpart of `sdf_torus_concavity`.
     #[test]
     fn a_torus_is_concave_only_within_its_ring_and_by_no_more_than_is_said() {
-        let prepared = isolith_field::PreparedShape::new(&ShapeKind::Torus.default_shape());
+        let packed = ShapeKind::Torus.default_shape().packed();
+        let torus = TorusParams::read(|i| packed[i]);
         let from_axis = |p: [f64; 3], length: f64| p[0].hypot(p[2]) - length;
         let concavity = |p: [f64; 3], length: f64| match from_axis(p, length) {
-            nearest if nearest >= prepared.parameters[0] => 0.0,
+            nearest if nearest >= torus.major_radius => 0.0,
             nearest => 1.0 / nearest.max(1e-9),
         };
         let within = worst(ShapeKind::Torus, concavity);

@@ -8,6 +8,7 @@
 //! | `files` | the files of `shaders/`, and their includes |
 //! | `op_set`, `structure` | the properties of a scene, and of a component, that determine the source |
 //! | `options`, `evaluator` | options of the pipelines, and the evaluators |
+//! | `params` | the structs of parameters, and their reading |
 //! | `calls`, `modifiers` | calls of the functions of shapes and modifiers |
 //! | `dual`, `gradients` | these functions with their derivatives |
 //! | `lookahead`, `material_weights`, `specialize` | straight-line code |
@@ -27,6 +28,7 @@ mod material_weights;
 mod modifiers;
 mod op_set;
 mod options;
+mod params;
 #[cfg(test)]
 mod random;
 mod specialize;

@@ -7,7 +7,8 @@ use glam::{DVec2, DVec3};
 use isolith::field::PreparedShape;
 use isolith::field::eval::{heightmap_height, ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
-use isolith::scene::{Shape, ShapeKind, profile_curve, text_profile, tube_curve};
+use isolith::scene::shape_params::{HeightmapParams, OceanParams, TerrainParams};
+use isolith::scene::{EvalParams, Shape, ShapeKind, profile_curve, text_profile, tube_curve};
 
 use super::bricks;
 use super::samples::evaluate;
@@ -113,12 +114,12 @@ fn depth_in(endless: &PreparedShape, p: DVec2) -> f64 {
 
 fn height(prepared: &PreparedShape, x: f64, z: f64) -> f64 {
     let rows = |row: usize| prepared.payload[row];
-    let of_kind = match prepared.kind {
-        ShapeKind::Ocean => ocean_height,
-        ShapeKind::Heightmap => heightmap_height,
-        _ => terrain_height,
-    };
-    of_kind(x, z, &prepared.parameters, &rows)
+    let number = |i: usize| prepared.parameters[i];
+    match prepared.kind {
+        ShapeKind::Ocean => ocean_height(x, z, &OceanParams::read(number), &rows),
+        ShapeKind::Heightmap => heightmap_height(x, z, &HeightmapParams::read(number), &rows),
+        _ => terrain_height(x, z, &TerrainParams::read(number), &rows),
+    }
 }
 
 pub fn inside(shape: &Shape, p: DVec3) -> bool {

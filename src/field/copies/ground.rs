@@ -7,7 +7,8 @@ use crate::ray_limits::RayLimits;
 use crate::scene_eval::SceneEvaluator;
 use crate::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
-use isolith_scene::{Node, NodeId, NodeKind, Operation, Scene, ShapeKind};
+use isolith_scene::shape_params::{HeightmapParams, OceanParams, TerrainParams};
+use isolith_scene::{EvalParams, Node, NodeId, NodeKind, Operation, Scene, ShapeKind};
 
 /// A point of the ground, in the instancer's space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,11 +171,19 @@ pub fn aligned(normal: DVec3, share: f64) -> DQuat {
     DQuat::IDENTITY.slerp(DQuat::from_rotation_arc(DVec3::Y, normal), share)
 }
 
+/// Half the sides, the greatest height and the slope of a heightfield's parameters.
+macro_rules! of_surface {
+    ($params:ident, $number:ident) => {{
+        let params = $params::read($number);
+        (params.half, params.top, params.slope)
+    }};
+}
+
 /// The heightfield that the scene consists of, if it stands upright in the instancer's space.
 fn heightfield(flat: &FlatScene, world_from_local: &DAffine3) -> Option<Heightfield> {
     let ([component], [node]) = (&flat.components[..], &flat.nodes[..]) else { return None };
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
-    if !node.is_leaf() || !matches!(kind, ShapeKind::Terrain | ShapeKind::Ocean | ShapeKind::Heightmap) {
+    if !node.is_leaf() {
         return None;
     }
     let rows = component.placing(flat, 0)?;
@@ -187,8 +196,14 @@ fn heightfield(flat: &FlatScene, world_from_local: &DAffine3) -> Option<Heightfi
         return None;
     }
     let params = &flat.params[node.params as usize..];
-    let [half_x, _, half_z, top] = params[crate::LEAF_ROWS].map(f64::from);
-    let slope = f64::from(params[crate::LEAF_ROWS + 1][0]) * f64::from(params[0][1]);
+    let number = |at: usize| f64::from(params[crate::LEAF_ROWS + at / 4][at % 4]);
+    let (half, top, slope) = match kind {
+        ShapeKind::Terrain => of_surface!(TerrainParams, number),
+        ShapeKind::Ocean => of_surface!(OceanParams, number),
+        ShapeKind::Heightmap => of_surface!(HeightmapParams, number),
+        _ => return None,
+    };
+    let slope = slope * f64::from(params[0][1]);
     let component_from_shape = shape_from_component.inverse();
-    Some(Heightfield { shape_from_local, component_from_shape, half: [half_x, half_z], top, slope })
+    Some(Heightfield { shape_from_local, component_from_shape, half, top, slope })
 }

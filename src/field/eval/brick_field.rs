@@ -10,6 +10,7 @@ use isolith_bricks::{
     BRICK_COARSER, BRICK_INSIDE, BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, COARSER, FADE_END, FADE_START,
     INSIDE, NO_ENTRIES, SAMPLE_REACH, SAMPLE_STEPS,
 };
+use isolith_scene::shape_params::MeshFieldParams;
 
 /// Rows of a level.
 const LEVEL_ROWS: usize = 3;
@@ -21,7 +22,7 @@ pub const MESH_FIELD_SPREAD: f64 = 0.75;
 ///
 /// Samples are rounded, and their interpolation has kinks at every voxel: its gradient is taken over a voxel and a half,
 /// where it is smooth.
-pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
+pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &MeshFieldParams, data: Data<'_>) -> T {
     let at = DVec3::from(p.map(T::value));
     T::known(mesh_field(at, data), p, || {
         let step = MESH_FIELD_SPREAD * mesh_field_voxel(at, data);

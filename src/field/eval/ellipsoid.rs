@@ -1,6 +1,7 @@
 //! The ellipsoid. Its distance is the root of an equation without a closed form.
 
 use super::Real;
+use isolith_scene::shape_params::EllipsoidParams;
 
 /// The limit on steps of Newton's method. Four are enough for f32 (the GPU's count). After eight the error over
 /// random half axes, including thin and zero ones, is the rounding of f64.
@@ -18,9 +19,9 @@ const OFF: f64 = 1e-12;
 /// With the normal n at that point, n·p − |r n| is the distance to the tangent plane of that normal: its error is
 /// only the square of the error in n, for zero half axes too. At the best n its gradient is n itself, so n takes no
 /// part in differentiation.
-pub fn sdf_ellipsoid<T: Real>(p: [T; 3], parameters: &[f64; 8]) -> T {
+pub fn sdf_ellipsoid<T: Real>(p: [T; 3], params: &EllipsoidParams) -> T {
     // Sorted, so that the least half axis comes first.
-    let mut r = [parameters[0], parameters[1], parameters[2]];
+    let mut r = params.radii;
     let mut q = p.map(T::abs);
     for (i, j) in [(0, 1), (1, 2), (0, 1)] {
         if r[i] > r[j] {

@@ -4,39 +4,40 @@ use std::f64::consts::TAU;
 
 use super::Real;
 use super::sdf::{Data, length3};
+use isolith_scene::shape_params::{HeightmapParams, OceanParams, TerrainParams};
 
 /// Hills; a lower bound of the distance.
-pub fn sdf_terrain<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    heightfield(p, q, terrain_height(p[0], p[2], q, rows))
+pub fn sdf_terrain<T: Real>(p: [T; 3], q: &TerrainParams, rows: Data<'_>) -> T {
+    heightfield(p, terrain_height(p[0], p[2], q, rows), q.half, q.depth, q.top, q.slope)
 }
 
 /// Waves; a lower bound of the distance.
-pub fn sdf_ocean<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    heightfield(p, q, ocean_height(p[0], p[2], q, rows))
+pub fn sdf_ocean<T: Real>(p: [T; 3], q: &OceanParams, rows: Data<'_>) -> T {
+    heightfield(p, ocean_height(p[0], p[2], q, rows), q.half, q.depth, q.top, q.slope)
 }
 
 /// A landscape from an image; a lower bound of the distance.
-pub fn sdf_heightmap<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    heightfield(p, q, heightmap_height(p[0], p[2], q, rows))
+pub fn sdf_heightmap<T: Real>(p: [T; 3], q: &HeightmapParams, rows: Data<'_>) -> T {
+    heightfield(p, heightmap_height(p[0], p[2], q, rows), q.half, q.depth, q.top, q.slope)
 }
 
-/// The solid below the heights and within the box. The height above the surface, over √(1 + L²) for the steepest
-/// slope L, never exceeds the distance to the surface.
-fn heightfield<T: Real>(p: [T; 3], q: &[f64; 8], height: T) -> T {
-    let above = (p[1] - height) * q[4];
-    let (middle, half) = (0.5 * (q[3] - q[1]), 0.5 * (q[3] + q[1]));
-    let d = [p[0].abs() - q[0], (p[1] - middle).abs() - half, p[2].abs() - q[2]];
+/// The solid below the heights and within the box. The height above the surface times `slope`, which is
+/// one over √(1 + L²) for the steepest slope L, never exceeds the distance to the surface.
+fn heightfield<T: Real>(p: [T; 3], height: T, half: [f64; 2], depth: f64, top: f64, slope: f64) -> T {
+    let above = (p[1] - height) * slope;
+    let (middle, half_height) = (0.5 * (top - depth), 0.5 * (top + depth));
+    let d = [p[0].abs() - half[0], (p[1] - middle).abs() - half_height, p[2].abs() - half[1]];
     let most = d[0].max(d[1].max(d[2]));
     let outside = if most.value() > 0.0 { length3(d.map(T::positive)) } else { most };
     above.max(outside)
 }
 
 /// The height of hills at (x, z), in meters: a sum of layers of noise.
-pub fn terrain_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
+pub fn terrain_height<T: Real>(x: T, z: T, q: &TerrainParams, rows: Data<'_>) -> T {
     let mut sum = T::constant(0.0);
-    for row in 0..q[5] as usize {
+    for row in 0..q.layers as usize {
         let [frequency, height, salt, _] = rows.row(1 + row);
-        sum = sum + noise(x * frequency, z * frequency, q[6] as u32, salt as u32) * height;
+        sum = sum + noise(x * frequency, z * frequency, q.seed, salt as u32) * height;
     }
     sum
 }
@@ -68,12 +69,12 @@ fn lattice(i: u32, j: u32, seed: u32, salt: u32) -> f64 {
 }
 
 /// The height of waves at (x, z), in meters.
-pub fn ocean_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
+pub fn ocean_height<T: Real>(x: T, z: T, q: &OceanParams, rows: Data<'_>) -> T {
     let mut sum = T::constant(0.0);
-    for row in 0..q[5] as usize {
+    for row in 0..q.waves as usize {
         let [along_x, along_z, height, phase] = rows.row(1 + row);
         let turns = x * along_x + z * along_z + phase;
-        sum = sum + (cosine(turns) + cosine(turns * 2.0_f64) * (0.5 * q[6])) * height;
+        sum = sum + (cosine(turns) + cosine(turns * 2.0_f64) * (0.5 * q.harmonic)) * height;
     }
     sum
 }
@@ -86,12 +87,14 @@ fn cosine<T: Real>(turns: T) -> T {
 
 /// The height of an image's surface at (x, z), in meters: a quadratic B-spline over its cells. Beyond the border the
 /// height of the border continues.
-pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
-    let (columns, lines) = (q[5], q[6]);
+pub fn heightmap_height<T: Real>(x: T, z: T, q: &HeightmapParams, rows: Data<'_>) -> T {
+    let [columns, lines] = q.cells;
     let cells = |v: T, half: f64, count: f64| {
         v.max(T::constant(-half)).min(T::constant(half)) * (0.5 * count / half.max(1e-9)) + 0.5 * count
     };
-    sdf_heights([cells(x, q[0], columns), cells(z, q[2], lines)], [columns, lines], &|row: usize| rows.row(1 + row))
+    sdf_heights([cells(x, q.half[0], columns), cells(z, q.half[1], lines)], [columns, lines], &|row: usize| {
+        rows.row(1 + row)
+    })
 }
 
 /// The height of a grid at a position, in cells from its first corner: a quadratic B-spline.

@@ -2,22 +2,26 @@
 
 use super::Real;
 use super::sdf::{Data, extruded, length2};
+use isolith_scene::shape_params::{ExtrusionParams, RevolutionParams, TextParams};
 
 /// A profile between two faces, with rounded edges. Exact without rounding where the face is nearer than the edge.
-pub fn sdf_extrusion<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    let (half, rounding) = (q[2], q[3]);
-    let d = sdf_profile([p[0], p[1]], q[0] as usize, q[1] != 0.0, rows);
-    extruded([d + rounding, p[2].abs() - (half - rounding)]) - rounding
+pub fn sdf_extrusion<T: Real>(p: [T; 3], q: &ExtrusionParams, rows: Data<'_>) -> T {
+    between_faces(sdf_profile([p[0], p[1]], q.groups as usize, false, rows), p[2], q.half_depth, q.rounding)
 }
 
-/// A text between two faces.
-pub fn sdf_text<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    sdf_extrusion(p, q, rows)
+/// A text between two faces. Overlapping letters are solid.
+pub fn sdf_text<T: Real>(p: [T; 3], q: &TextParams, rows: Data<'_>) -> T {
+    between_faces(sdf_profile([p[0], p[1]], q.groups as usize, true, rows), p[2], q.half_depth, q.rounding)
 }
 
 /// A profile turned around the Y axis; exact.
-pub fn sdf_revolution<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
-    sdf_profile([length2([p[0], p[2]]), p[1]], q[0] as usize, q[1] != 0.0, rows)
+pub fn sdf_revolution<T: Real>(p: [T; 3], q: &RevolutionParams, rows: Data<'_>) -> T {
+    sdf_profile([length2([p[0], p[2]]), p[1]], q.groups as usize, false, rows)
+}
+
+/// The part between two faces with rounded edges, from the distance to its profile.
+fn between_faces<T: Real>(profile: T, z: T, half_depth: f64, rounding: f64) -> T {
+    extruded([profile + rounding, z.abs() - (half_depth - rounding)]) - rounding
 }
 
 /// The signed distance in the plane to closed curves in `groups` groups; exact. A point is inside if the curves wind

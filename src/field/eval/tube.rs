@@ -4,14 +4,15 @@ use glam::DVec3;
 
 use super::Real;
 use super::sdf::{Data, length3};
+use isolith_scene::shape_params::TubeParams;
 
 /// A round tube along a smooth curve. Exact outside; inside, a lower bound where it meets itself.
 ///
 /// The field is the minimum of |p − c| − r over its balls. Moving the ball away from the nearest one changes the
 /// value only by the square of the move, so the gradient is that of the nearest ball.
-pub fn sdf_tube<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
+pub fn sdf_tube<T: Real>(p: [T; 3], q: &TubeParams, rows: Data<'_>) -> T {
     let at = DVec3::from_array(p.map(T::value));
-    let (pieces, first) = (q[0] as usize, 1 + q[1] as usize);
+    let (pieces, first) = (q.pieces as usize, 1 + q.groups as usize);
     let (mut least, mut nearest) = (f64::INFINITY, (DVec3::ZERO, 0.0));
     for piece in 0..pieces {
         let row = |i: usize| rows.row(first + 3 * piece + i);

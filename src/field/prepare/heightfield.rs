@@ -1,14 +1,13 @@
 //! Heightfields: heights over a rectangle, solid down to a flat bottom.
 //!
-//! Parameters: half the width, depth of the ground, half the length, greatest height; then one over √(1 + L²) for the
-//! greatest slope L, the number of rows, seed or sharpness. Rows: frequency, height and salt of each layer of noise;
-//! or the waves per meter along X and along Z, height and phase (in turns) of each wave; or each height of an image
-//! with its neighbors along X, line by line, in which case the counts are columns and lines.
+//! Rows: frequency, height and salt of each layer of noise; or the waves per meter along X and along Z, height and
+//! phase (in turns) of each wave; or each height of an image with its neighbors along X, line by line.
 
 use std::f64::consts::{PI, TAU};
 
 use super::prepared_params::PreparedParams;
 use isolith_scene::Heights;
+use isolith_scene::shape_params::{HeightmapParams, OceanParams, TerrainParams};
 
 /// The steepest slope of one layer of noise with heights and cells of 1: the heights of two corners differ by at most
 /// 2, and the slope of the curve between them is at most 3/2.
@@ -17,15 +16,14 @@ pub const NOISE_SLOPE: f64 = 3.0;
 /// The least side of an image cell, in meters; thinner cells count as this.
 const LEAST_CELL: f64 = 1e-9;
 
-fn prepared([width, depth, length]: [f64; 3], top: f64, slope: f64, last: f64, rows: Vec<[f64; 4]>) -> PreparedParams {
-    let count = rows.len() as f64;
-    let scale = 1.0 / 1.0_f64.hypot(slope);
-    PreparedParams::new([0.5 * width, depth, 0.5 * length, top], [scale, count, last, 0.0], rows)
+/// The factor that makes a height above a surface of this steepest slope a lower bound of the distance to it.
+fn bound_of(steepest: f64) -> f64 {
+    1.0 / 1.0_f64.hypot(steepest)
 }
 
 /// Fractal noise: the cells of each layer are half as wide as those of the layer before.
 pub fn terrain(
-    size: [f64; 3],
+    [width, depth, length]: [f64; 3],
     amplitude: f64,
     wavelength: f64,
     octaves: f64,
@@ -36,15 +34,17 @@ pub fn terrain(
     let sum: f64 = (0..octaves).map(|i| roughness.powi(i)).sum();
     let row = |i: i32| [2.0_f64.powi(i) / wavelength, amplitude * roughness.powi(i) / sum, f64::from(i), 0.0];
     let rows: Vec<_> = (0..octaves).map(row).collect();
-    let slope = rows.iter().map(|[frequency, height, ..]| NOISE_SLOPE * frequency * height).sum();
-    prepared(size, amplitude, slope, seed.floor(), rows)
+    let steepest = rows.iter().map(|[frequency, height, ..]| NOISE_SLOPE * frequency * height).sum();
+    let half = [0.5 * width, 0.5 * length];
+    let (slope, layers, seed) = (bound_of(steepest), rows.len() as u32, seed.floor() as u32);
+    PreparedParams::new(&TerrainParams { half, depth, top: amplitude, slope, layers, seed }, rows)
 }
 
 /// Waves with crests to the second order of Stokes' theory (1847): cos x + s/2 cos 2x, with a slope of at most 1 + s
 /// and an absolute value of at most 1 + s/2. `run` holds direction, spread and phase, in radians. Shorter waves are
 /// slower, as in deep water.
 pub fn ocean(
-    size: [f64; 3],
+    [width, depth, length]: [f64; 3],
     amplitude: f64,
     wavelength: f64,
     waves: f64,
@@ -66,17 +66,18 @@ pub fn ocean(
         [frequency * turned.cos(), frequency * turned.sin(), height, moved.rem_euclid(1.0)]
     };
     let rows: Vec<_> = (0..count).map(row).collect();
-    let slope = rows.iter().map(|[x, z, height, _]| TAU * x.hypot(*z) * height * (1.0 + sharp)).sum();
-    prepared(size, amplitude, slope, sharp, rows)
+    let steepest = rows.iter().map(|[x, z, height, _]| TAU * x.hypot(*z) * height * (1.0 + sharp)).sum();
+    let half = [0.5 * width, 0.5 * length];
+    let (slope, waves) = (bound_of(steepest), rows.len() as u32);
+    PreparedParams::new(&OceanParams { half, depth, top: amplitude, slope, waves, harmonic: sharp }, rows)
 }
 
 /// A landscape from an image.
-pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> PreparedParams {
-    let [columns, lines] = image.size.map(|n| n as f64);
-    let (rows, steepest) = spline(image, [size[0] / columns, size[2] / lines], height);
-    let mut out = prepared(size, height, steepest, lines, rows);
-    out.parameters[5] = columns;
-    out
+pub fn heightmap(image: &Heights, [width, depth, length]: [f64; 3], height: f64) -> PreparedParams {
+    let cells = image.size.map(|n| n as f64);
+    let (rows, steepest) = spline(image, [width / cells[0], length / cells[1]], height);
+    let half = [0.5 * width, 0.5 * length];
+    PreparedParams::new(&HeightmapParams { half, depth, top: height, slope: bound_of(steepest), cells }, rows)
 }
 
 /// The heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): its values stay

@@ -2,6 +2,7 @@
 
 use super::prepared_params::PreparedParams;
 use isolith_bricks::{BrickLevels, Bricks};
+use isolith_scene::shape_params::MeshFieldParams;
 
 /// Rows of a level.
 const LEVEL_ROWS: usize = 3;
@@ -18,7 +19,7 @@ pub fn mesh_field(levels: &BrickLevels) -> PreparedParams {
         rows.extend(level_rows(bricks, first));
         first += bricks.texels.len();
     }
-    PreparedParams::new([0.0; 4], [0.0; 4], rows)
+    PreparedParams::new(&MeshFieldParams {}, rows)
 }
 
 /// There are fewer texels than 32-bit floats count exactly, see `MAX_BRICK_TEXELS`.

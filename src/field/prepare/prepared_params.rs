@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use isolith_scene::SHAPE_FLOATS;
+use isolith_scene::{EvalParams, SHAPE_FLOATS};
 
 /// Parameters and payload of a prepared shape.
 pub(super) struct PreparedParams {
@@ -11,11 +11,10 @@ pub(super) struct PreparedParams {
 }
 
 impl PreparedParams {
-    /// Parameters from their first two rows.
-    pub fn new(first: [f64; 4], second: [f64; 4], payload: Vec<[f64; 4]>) -> Self {
+    /// Packs the parameters.
+    pub fn new(params: &impl EvalParams, payload: Vec<[f64; 4]>) -> Self {
         let mut parameters = [0.0; SHAPE_FLOATS];
-        parameters[..4].copy_from_slice(&first);
-        parameters[4..8].copy_from_slice(&second);
+        params.write(|at, number| parameters[at] = number);
         Self { parameters, payload }
     }
 }

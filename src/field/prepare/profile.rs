@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::prepared_params::PreparedParams;
 use isolith_geometry::{Aabb, ArcPiece};
 use isolith_scene::profile_curve;
+use isolith_scene::shape_params::{ExtrusionParams, RevolutionParams, TextParams};
 
 /// The largest number of pieces in a group, which evaluators skip together.
 const PROFILE_GROUP: usize = 8;
@@ -18,7 +19,7 @@ const PROFILE_GROUP: usize = 8;
 pub fn extrusion(corners: &[[f64; 2]], smooth: bool, depth: f64, rounding: f64) -> PreparedParams {
     let (rows, groups) = profile(&profile_curve(corners, smooth));
     let half = 0.5 * depth;
-    PreparedParams::new([groups as f64, 0.0, half, rounding.min(half)], [0.0; 4], rows)
+    PreparedParams::new(&ExtrusionParams { groups, half_depth: half, rounding: rounding.min(half) }, rows)
 }
 
 /// The parameters of extruded letters. Overlapping profiles are solid.
@@ -26,7 +27,7 @@ pub fn text(arcs: &[ArcPiece], depth: f64, rounding: f64) -> PreparedParams {
     let nothing = [ArcPiece::straight(DVec3::ZERO, DVec3::ZERO)];
     let (rows, groups) = profile(if arcs.is_empty() { &nothing } else { arcs });
     let half = 0.5 * depth;
-    PreparedParams::new([groups as f64, 1.0, half, rounding.min(half)], [0.0; 4], rows)
+    PreparedParams::new(&TextParams { groups, half_depth: half, rounding: rounding.min(half) }, rows)
 }
 
 /// The parameters of a revolved profile.
@@ -43,7 +44,7 @@ pub fn revolution(corners: &[[f64; 2]], smooth: bool, offset: f64) -> PreparedPa
         kept.push(ArcPiece::straight(DVec3::Y * low, DVec3::Y * low));
     }
     let (rows, groups) = profile(&kept);
-    PreparedParams::new([groups as f64, 0.0, 0.0, 0.0], [0.0; 4], rows)
+    PreparedParams::new(&RevolutionParams { groups }, rows)
 }
 
 /// The pieces of an arc between positions on it.
@@ -109,7 +110,7 @@ fn with_heights(arcs: Vec<ArcPiece>) -> Vec<(ArcPiece, [f64; 2])> {
 }
 
 /// The rows of closed curves, and the number of groups. Neighbors in `arcs` that meet form one chain.
-pub fn profile(arcs: &[ArcPiece]) -> (Vec<[f64; 4]>, usize) {
+pub fn profile(arcs: &[ArcPiece]) -> (Vec<[f64; 4]>, u32) {
     let pieces: Vec<ArcPiece> = arcs.iter().flat_map(|arc| cut(*arc, &arc.turns(1))).collect();
     let pieces: Vec<Rising> = with_heights(pieces).iter().map(rising).collect();
     let mut groups: Vec<std::ops::Range<usize>> = Vec::new();
@@ -134,5 +135,5 @@ pub fn profile(arcs: &[ArcPiece]) -> (Vec<[f64; 4]>, usize) {
         rows.push([piece.middle.x, piece.middle.y, piece.tangent.x, piece.tangent.y]);
         rows.push([piece.bend, piece.reach, piece.span[0], piece.span[1]]);
     }
-    (rows, groups.len())
+    (rows, groups.len() as u32)
 }

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::prepared_params::{PreparedParams, bounding_sphere};
 use isolith_geometry::{Aabb, ArcPiece};
+use isolith_scene::shape_params::TubeParams;
 use isolith_scene::tube_curve;
 
 /// The number of pieces in a group, which evaluators skip together.
@@ -76,5 +77,5 @@ pub fn tube(points: &[[f64; 4]], radius: f64, closed: bool) -> PreparedParams {
         .collect();
     let groups = rows.len();
     rows.extend(pieces.iter().flat_map(Piece::rows));
-    PreparedParams::new([pieces.len() as f64, groups as f64, 0.0, 0.0], [0.0; 4], rows)
+    PreparedParams::new(&TubeParams { pieces: pieces.len() as u32, groups: groups as u32 }, rows)
 }

@@ -1,7 +1,42 @@
 //! Macros that define the types of shapes from their table.
 
+/// The struct that the evaluators of a shape read: its parameters, or for one with data what is derived from them.
+macro_rules! shape_eval_params {
+    ($(#[doc = $doc:literal])+ $eval:ident { $($own:tt)* } data { $($members:tt)* }) => {
+        $crate::eval_params! { $(#[doc = $doc])+ $eval { $($members)* } }
+    };
+    ($(#[doc = $doc:literal])+ $eval:ident { $( $(#[doc = $help:literal])+ $param:ident: $type:ty, )* }) => {
+        $crate::eval_params! {
+            $(#[doc = $doc])+ $eval { $( $(#[doc = $help])+ $param: <$type as Packed>::Value, )* }
+        }
+    };
+}
+
+/// Writes the parameters of a shape without data.
+macro_rules! pack_shape {
+    ($eval:ident, $out:ident, { $($param:ident,)* }) => {
+        shape_params::$eval { $( $param: Packed::pack($param), )* }.write(|at, number| $out[at] = number)
+    };
+    ($eval:ident, $out:ident, { $($param:ident,)* } data) => {
+        ()
+    };
+}
+
+/// The shape of packed parameters, if it has no data.
+macro_rules! unpack_shape {
+    ($name:ident, $eval:ident, $packed:ident, { $($param:ident,)* }) => {{
+        let read = shape_params::$eval::read(|i| $packed[i]);
+        Some(Shape::$name { $( $param: Packed::unpack(read.$param), )* })
+    }};
+    ($name:ident, $eval:ident, $packed:ident, { $($param:ident,)* } data) => {
+        None
+    };
+}
+
 macro_rules! shapes {
-    ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
+    ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident($eval:ident) $(with $data:ident {
+        $( $(#[doc = $member_help:literal])+ $member:ident: $member_type:ty, )*
+    })?, $label:literal {
         $( $(#[doc = $help:literal])+ $(#[serde($missing:ident)])? $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
         $crate::params::param_kinds! {
@@ -19,6 +54,17 @@ macro_rules! shapes {
             } )+
         }
 
+        /// The parameters of each shape as its evaluators read them, by the names of the table.
+        pub mod shape_params {
+            use super::{Degrees, Packed, Sides};
+
+            $( shape_eval_params! {
+                $(#[doc = $doc])+ $eval { $( $(#[doc = $help])+ $param: $type, )* } $( $data {
+                    $( $(#[doc = $member_help])+ $member: $member_type, )*
+                } )?
+            } )+
+        }
+
         impl ShapeKind {
             /// The function that computes its field, on the CPU and on the GPU.
             pub fn function(self) -> &'static str {
@@ -26,13 +72,9 @@ macro_rules! shapes {
             }
 
             /// The shape of these packed parameters, see [`Shape::packed`]; `None` for one with data.
-            #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
+            #[allow(unused_variables, reason = "shapes without parameters")]
             pub fn unpacked(self, packed: &[f64; SHAPE_FLOATS]) -> Option<Shape> {
-                if self.has_data() {
-                    return None;
-                }
-                let mut rest = packed.as_slice();
-                Some(match self { $( Self::$name => Shape::$name { $( $param: Packed::unpack(&mut rest), )* }, )+ })
+                match self { $( Self::$name => unpack_shape!($name, $eval, packed, { $($param,)* } $($data)?), )+ }
             }
 
             /// Rows of four numbers in total: those of its parameters, and for a shape with data the location of its
@@ -43,10 +85,12 @@ macro_rules! shapes {
 
             /// Rows of four numbers for its parameters, see [`Shape::packed`].
             pub fn parameter_rows(self) -> usize {
-                if self.has_data() {
-                    return DATA_PARAMETER_ROWS;
-                }
-                match self { $( Self::$name => const { (0_usize $( + <$type as Packed>::FLOATS )*).div_ceil(4) }, )+ }
+                match self { $( Self::$name => const { <shape_params::$eval as EvalParams>::LAYOUT.rows() }, )+ }
+            }
+
+            /// The names of the numbers in these rows, and their places.
+            pub fn eval_layout(self) -> ParamLayout {
+                match self { $( Self::$name => <shape_params::$eval as EvalParams>::LAYOUT, )+ }
             }
 
             /// Whether it is evaluated from a payload derived from its parameters.
@@ -66,25 +110,20 @@ macro_rules! shapes {
         }
 
         impl Shape {
-            /// The parameters in order, as the evaluators read them; unused places are 0. An angle becomes its sine and
-            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one side. For a shape
-            /// with data all are 0: `field::PreparedShape` makes the numbers that the evaluators read.
-            #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
+            /// The parameters as the evaluators read them, see [`ShapeKind::eval_layout`]; unused places are 0. For a
+            /// shape with data all are 0: `field::PreparedShape` makes the numbers that the evaluators read.
+            #[allow(unused_variables, reason = "shapes with data")]
             pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
                 let mut out = [0.0; SHAPE_FLOATS];
-                if self.kind().has_data() {
-                    return out;
-                }
-                let mut rest = out.as_mut_slice();
-                match self { $( Self::$name { $( $param, )* } => { $( Packed::pack($param, &mut rest); )* } )+ }
+                match self { $( Self::$name { $( $param, )* } => pack_shape!($eval, out, { $($param,)* } $($data)?), )+ }
                 out
             }
         }
 
-        /// Calls `$callback!(Name = sdf_name, …)` with every shape; `with data` follows those that have data.
+        /// Calls `$callback!(Name = sdf_name(NameParams), …)` with every shape; `with data` follows those that have data.
         #[macro_export]
         macro_rules! for_each_shape {
-            ($callback:ident) => { $callback! { $( $name = $function $(with $data)?, )+ } };
+            ($callback:ident) => { $callback! { $( $name = $function($eval) $(with $data)?, )+ } };
         }
     };
 }

@@ -4,21 +4,37 @@
 mod evaluate;
 
 use super::{DUAL_PRELUDE, DualError, dual};
+use crate::params::built;
 use crate::random::Random;
 use crate::{Evaluator, OpSet, Options, assemble, assemble_plain};
-use evaluate::Machine;
+pub(crate) use evaluate::Machine;
 use isolith_field::PreparedShape;
 use isolith_field::eval::shape_distance;
 use isolith_scene::{Limits, ParamValue, Shape, ShapeKind};
 
 const DETACH: &str = include_str!("../../../shaders/sdf/detach.wgsl");
 
-/// Every shape without payload, with its source and all includes.
-fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str, String)> {
-    let source = |name| assemble_plain(&format!("sdf/{name}.wgsl")).unwrap();
+/// Every shape without payload.
+fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str)> {
     let named = |kind: &ShapeKind| (*kind, kind.function().strip_prefix("sdf_").unwrap());
     let without_data = ShapeKind::ALL.iter().filter(|kind| !kind.has_data());
-    without_data.map(named).map(move |(kind, name)| (kind, name, source(name)))
+    without_data.map(named)
+}
+
+/// The function of a shape and its dual function as `shape` and `dual_shape`, which take the parameters as two rows.
+/// `payload` is the source of what it reads of its payload.
+fn shape_machine(kind: ShapeKind, payload: &str) -> Machine {
+    let function = kind.function();
+    let library = assemble_plain(&format!("sdf/{}.wgsl", function.strip_prefix("sdf_").unwrap())).unwrap();
+    let source = format!("{library}{payload}");
+    let derived = dual(&source, function).unwrap_or_else(|e| panic!("{function}: {e}"));
+    let params = built(&kind.eval_layout(), &|row| ["a", "b"][row].to_owned());
+    let data = if kind.has_data() { ", 0u" } else { "" };
+    Machine::new(&format!(
+        "{source}{DUAL_PRELUDE}{derived}
+        fn shape(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return {function}(p{params}{data}); }}
+        fn dual_shape(p: vec3f, a: vec4f, b: vec4f) -> vec4f {{ return dual_{function}(p{params}{data}); }}"
+    ))
 }
 
 /// Parameters of a shape, packed: lengths between 0.1 and 1.1, all angles and numbers of sides.
@@ -63,12 +79,12 @@ fn differences(machine: &Machine, function: &str, p: [f64; 3], a: &[f64], b: &[f
 
 /// The largest difference between the dual function's gradient and central differences, over random points.
 fn worst(source: &str, function: &str, tries: usize) -> f64 {
-    worst_with(source, function, tries, |random| std::array::from_fn(|_| 0.1 + random.next()))
+    let machine = machine(source, function);
+    worst_with(&machine, function, tries, |random| std::array::from_fn(|_| 0.1 + random.next()))
 }
 
 /// Like `worst`, with parameters made from random numbers.
-fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&mut Random) -> [f64; 8]) -> f64 {
-    let machine = machine(source, function);
+fn worst_with(machine: &Machine, function: &str, tries: usize, parameters: impl Fn(&mut Random) -> [f64; 8]) -> f64 {
     let mut random = Random(7);
     let (mut worst, mut compared): (f64, _) = (0.0, 0);
     for _ in 0..tries {
@@ -77,7 +93,7 @@ fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&m
         let p = random.point(1.5);
         let derived = machine.call(&format!("dual_{function}"), &[&p, a, b]);
         assert_eq!(derived[3], machine.call(function, &[&p, a, b])[0], "{function} at {p:?}, {params:?}");
-        let Some(gradient) = differences(&machine, function, p, a, b) else { continue };
+        let Some(gradient) = differences(machine, function, p, a, b) else { continue };
         compared += 1;
         for i in 0..3 {
             worst = worst.max((derived[i] - gradient[i]).abs() / gradient[i].abs().max(1.0));
@@ -89,8 +105,8 @@ fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&m
 
 #[test]
 fn gradients_of_shapes_are_those_of_central_differences() {
-    for (kind, name, text) in shapes() {
-        let error = worst_with(&text, kind.function(), 300, |random| parameters(kind, random));
+    for (kind, name) in shapes() {
+        let error = worst_with(&shape_machine(kind, ""), "shape", 300, |random| parameters(kind, random));
         // Fractals have curvature at every scale.
         assert!(
             error < if matches!(name, "ellipsoid" | "julia" | "kleinian" | "mandelbulb") { 1e-3 } else { 1e-6 },
@@ -99,16 +115,14 @@ fn gradients_of_shapes_are_those_of_central_differences() {
     }
 }
 
-/// A shape with its payload: its source, in which `name` is its function in the form of a shape without payload.
-fn with_data(name: &str, body: &PreparedShape) -> String {
+/// A shape with its payload.
+fn with_data(body: &PreparedShape) -> Machine {
     let rows: Vec<String> =
         body.payload.iter().map(|r| format!("vec4f({:?}, {:?}, {:?}, {:?})", r[0], r[1], r[2], r[3])).collect();
     let (count, rows) = (rows.len(), rows.join(", "));
-    let source = assemble_plain(&format!("sdf/{name}.wgsl")).unwrap();
-    format!(
-        "{source}fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({rows}); return rows[at]; }}
-        fn {name}(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return sdf_{name}(p, a, b, 0u); }}"
-    )
+    let payload =
+        format!("fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({rows}); return rows[at]; }}\n");
+    shape_machine(body.kind, &payload)
 }
 
 #[test]
@@ -121,16 +135,16 @@ fn gradients_of_shapes_with_data_are_those_of_central_differences() {
             assert!(shape.set_value(1, ParamValue::Flag(true)));
         }
         let body = PreparedShape::new(&shape);
-        let machine = machine(&with_data(name, &body), name);
+        let machine = with_data(&body);
         let (a, b) = body.parameters.split_at(4);
         let mut random = Random(5);
         let mut compared = 0;
         for _ in 0..60 {
             let p = random.point(0.8);
-            let derived = machine.call(&format!("dual_{name}"), &[&p, a, b]);
+            let derived = machine.call("dual_shape", &[&p, a, b]);
             let reference = shape_distance(body.kind, p, &body.parameters, &body);
             assert!((derived[3] - reference).abs() < 1e-5, "{name} at {p:?}: {derived:?}, {reference}");
-            let Some(gradient) = differences(&machine, name, p, a, b) else { continue };
+            let Some(gradient) = differences(&machine, "shape", p, a, b) else { continue };
             compared += 1;
             assert!(
                 distance([derived[0], derived[1], derived[2]], gradient) < 1e-3,
@@ -147,7 +161,9 @@ fn all_dual_functions_stand_in_one_shader() {
     let text = assemble("surface.wgsl", &everything, Options::default()).unwrap();
     for &kind in ShapeKind::ALL {
         let data = if kind.has_data() { ", data: u32" } else { "" };
-        let signature = format!("fn dual_{}(p: vec3f, a: vec4f, b: vec4f{data}) -> vec4f {{", kind.function());
+        let layout = kind.eval_layout();
+        let params = if layout.members.is_empty() { String::new() } else { format!(", q: {}", layout.name) };
+        let signature = format!("fn dual_{}(p: vec3f{params}{data}) -> vec4f {{", kind.function());
         assert_eq!(text.matches(&signature).count(), 1, "{kind:?}");
     }
 }
@@ -164,15 +180,14 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn normals_at_surfaces_are_right_in_f32() {
-    for (kind, name, text) in shapes() {
+    for (kind, name) in shapes() {
         use ShapeKind::{Julia, Kleinian, Mandelbulb, MengerSponge};
         if matches!(kind, MengerSponge | Julia | Kleinian | Mandelbulb) {
             // Fractals have edges everywhere, and their fields do not lead to the surface in a few steps.
             continue;
         }
-        let derived = format!("dual_sdf_{name}");
-        let exact = machine(&text, &format!("sdf_{name}"));
-        let rounded = machine(&text, &format!("sdf_{name}")).rounded();
+        let derived = "dual_shape";
+        let [exact, rounded] = [shape_machine(kind, ""), shape_machine(kind, "").rounded()];
         let mut random = Random(3);
         let mut compared = 0;
         for _ in 0..200 {
@@ -180,25 +195,25 @@ fn normals_at_surfaces_are_right_in_f32() {
             let (a, b) = params.split_at(4);
             let mut p = random.point(1.0);
             for _ in 0..8 {
-                let d = exact.call(&derived, &[&p, a, b]);
+                let d = exact.call(derived, &[&p, a, b]);
                 p = std::array::from_fn(|i| p[i] - d[3] * direction(&d)[i]);
             }
             // The reference is the direction slightly outside. If it changes within a little more, there is an edge.
-            let normal = direction(&exact.call(&derived, &[&p, a, b]));
+            let normal = direction(&exact.call(derived, &[&p, a, b]));
             let beside = |i: usize, by: f64| {
                 let mut q: [f64; 3] = std::array::from_fn(|i| p[i] + 1e-5 * normal[i]);
                 q[i] += by;
-                direction(&exact.call(&derived, &[&q, a, b]))
+                direction(&exact.call(derived, &[&q, a, b]))
             };
             let reference = beside(0, 0.0);
-            if exact.call(&derived, &[&p, a, b])[3].abs() > 1e-7
+            if exact.call(derived, &[&p, a, b])[3].abs() > 1e-7
                 || (0..3).any(|i| distance(beside(i, 1e-3), reference) + distance(beside(i, -1e-3), reference) > 0.1)
             {
                 continue;
             }
             compared += 1;
             let error =
-                distance(direction(&rounded.call(&derived, &[&p.map(|v| f64::from(v as f32)), a, b])), reference);
+                distance(direction(&rounded.call(derived, &[&p.map(|v| f64::from(v as f32)), a, b])), reference);
             assert!(error < 2e-5, "{name} at {p:?}, {params:?}: {error:e}");
         }
         assert!(compared > 20, "{name}: only {compared} points compared");
@@ -221,8 +236,8 @@ fn a_face_has_a_normal_where_the_distance_is_exactly_zero() {
         ("hexagonal_prism", [0.1, 0.5, 0.1], [0.5, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
         ("plane", [3.0, 0.0, 1.0], zero, [0.0, 1.0, 0.0]),
     ] {
-        let (_, _, text) = shapes().find(|(_, n, _)| *n == name).unwrap();
-        let derived = machine(&text, &format!("sdf_{name}")).call(&format!("dual_sdf_{name}"), &[&p, &a, &zero]);
+        let (kind, _) = shapes().find(|(_, n)| *n == name).unwrap();
+        let derived = shape_machine(kind, "").call("dual_shape", &[&p, &a, &zero]);
         assert_eq!(derived[3], 0.0, "{name}");
         assert!(distance(direction(&derived), normal) < 1e-7, "{name} at {p:?}: {derived:?}");
     }

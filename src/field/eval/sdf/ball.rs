@@ -2,6 +2,10 @@
 
 use super::planar::length2;
 use crate::eval::Real;
+use isolith_scene::SineCosine;
+use isolith_scene::shape_params::{
+    CutSphereParams, DeathStarParams, HollowCutSphereParams, SolidAngleParams, VesicaParams,
+};
 
 fn turned<T: Real>(p: [T; 3]) -> [T; 2] {
     [length2([p[0], p[2]]), p[1]]
@@ -14,8 +18,8 @@ fn rim(radius: f64, cut: f64) -> f64 {
 
 /// A ball with a flat cut. Outside, the nearest point lies on the ball if the direction to its center leads there,
 /// else on the flat or its rim; inside, the nearer of both is exact.
-pub fn sdf_cut_sphere<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (radius, cut) = (q[0], q[1].clamp(-q[0], q[0]));
+pub fn sdf_cut_sphere<T: Real>(p: [T; 3], q: &CutSphereParams) -> T {
+    let (radius, cut) = (q.radius, q.cut.clamp(-q.radius, q.radius));
     let at = turned(p);
     let far = length2(at);
     let (over, under) = (far - radius, -at[1] + cut);
@@ -33,22 +37,22 @@ pub fn sdf_cut_sphere<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 }
 
 /// A bowl. Inside, the value is a lower bound where its wall meets itself.
-pub fn sdf_hollow_cut_sphere<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (radius, cut) = (q[0], q[1].clamp(-q[0], q[0]));
+pub fn sdf_hollow_cut_sphere<T: Real>(p: [T; 3], q: &HollowCutSphereParams) -> T {
+    let (radius, cut) = (q.radius, q.cut.clamp(-q.radius, q.radius));
     let at = turned(p);
     let edge = rim(radius, cut);
     // Whether the bowl covers the direction from the center. On the axis below it always does.
     let turn = at[1].value() * edge - at[0].value() * cut;
     let is_below = turn < 0.0 || (turn == 0.0 && at[1].value() < 0.0);
     let to_skin = if is_below { (length2(at) - radius).abs() } else { length2([at[0] - edge, at[1] - cut]) };
-    to_skin - 0.5 * q[2]
+    to_skin - 0.5 * q.thickness
 }
 
 /// A ball minus another ball. Outside, the nearest point lies on the ball or in the hollow if that point belongs to
 /// the surface, else on the circle where both meet. Inside, the nearer of both is exact.
-pub fn sdf_death_star<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (radius, distance) = (q[0], q[2]);
-    let cut_radius = q[1].min(radius + distance);
+pub fn sdf_death_star<T: Real>(p: [T; 3], q: &DeathStarParams) -> T {
+    let (radius, distance) = (q.radius, q.distance);
+    let cut_radius = q.cut_radius.min(radius + distance);
     let at = turned(p);
     let from_cut = [at[0], at[1] - distance];
     let (far, cut_far) = (length2(at), length2(from_cut));
@@ -71,8 +75,8 @@ pub fn sdf_death_star<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 }
 
 /// The part of a ball within an angle around the axis.
-pub fn sdf_solid_angle<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (radius, sine, cosine) = (q[0], q[1], q[2]);
+pub fn sdf_solid_angle<T: Real>(p: [T; 3], q: &SolidAngleParams) -> T {
+    let SolidAngleParams { radius, half_angle: SineCosine { sine, cosine } } = *q;
     let at = turned(p);
     let along = at[0] * sine + at[1] * cosine;
     let across = at[0] * cosine - at[1] * sine;
@@ -90,9 +94,9 @@ pub fn sdf_solid_angle<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 /// A spindle: an arc that revolves around its chord. The arc's center may be very far away, so the distance to it
 /// minus its radius is written as the difference of their squares over their sum, all times `k`, the ratio of the
 /// half axes.
-pub fn sdf_vesica<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let half_height = 0.5 * q[0];
-    let half_width = (0.5 * q[1]).min(half_height);
+pub fn sdf_vesica<T: Real>(p: [T; 3], q: &VesicaParams) -> T {
+    let half_height = 0.5 * q.height;
+    let half_width = (0.5 * q.width).min(half_height);
     let at = [length2([p[0], p[2]]), p[1].abs()];
     // `away` is k times the distance of the arc's center from the axis, in half heights.
     let scale = half_height.max(1e-100);

@@ -2,26 +2,28 @@
 
 use super::planar::{length2, length3, trapezoid};
 use crate::eval::Real;
+use isolith_scene::SineCosine;
+use isolith_scene::shape_params::{ConeParams, InfiniteCylinderParams, PyramidParams};
 
 /// An infinite cone that opens downward from its tip.
-pub fn sdf_cone<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (sine, cosine) = (q[0], q[1]);
+pub fn sdf_cone<T: Real>(p: [T; 3], q: &ConeParams) -> T {
+    let SineCosine { sine, cosine } = q.half_angle;
     let at = [length2([p[0], p[2]]), p[1]];
     let along = at[0] * sine - at[1] * cosine;
     if along.value() > 0.0 { at[0] * cosine + at[1] * sine } else { length2(at) }
 }
 
 /// An infinite cylinder.
-pub fn sdf_infinite_cylinder<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    length2([p[0], p[2]]) - q[0]
+pub fn sdf_infinite_cylinder<T: Real>(p: [T; 3], q: &InfiniteCylinderParams) -> T {
+    length2([p[0], p[2]]) - q.radius
 }
 
 /// A pyramid over a square.
 ///
 /// Symmetry maps the point into the sector of the face toward +X, where |z| < x. Outside, the distance is that of the
 /// nearer of face and square, each in its own plane; inside, that of the nearer plane.
-pub fn sdf_pyramid<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (half, height) = (0.5 * q[0], q[1]);
+pub fn sdf_pyramid<T: Real>(p: [T; 3], q: &PyramidParams) -> T {
+    let (half, height) = (0.5 * q.width, q.height);
     let (x, z) = (p[0].abs(), p[2].abs());
     let (x, z, y) = (x.max(z), x.min(z), p[1] + 0.5 * height);
     let slope = half.hypot(height);

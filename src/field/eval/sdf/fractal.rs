@@ -2,6 +2,7 @@
 
 use super::planar::{clamp, length2, length3};
 use crate::eval::Real;
+use isolith_scene::shape_params::{JuliaParams, KleinianParams, MandelbulbParams, MengerSpongeParams};
 
 /// The limit on iterations of a sponge: the hard limit of the parameter.
 const MOST: usize = 8;
@@ -19,13 +20,13 @@ const DISC: f64 = 0.92;
 /// A Menger sponge (Menger, "Dimensionstheorie", 1928): a cube without the bars that fill the middle thirds of its
 /// cells along each axis. The field is the maximum of the distance to the cube and the depth of the point in the bars
 /// of each size, so it is a lower bound of the distance with a slope of at most 1.
-pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let d = p.map(|c| c.abs() - 0.5 * q[0]);
+pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &MengerSpongeParams) -> T {
+    let d = p.map(|c| c.abs() - 0.5 * q.size);
     let most = d[0].max(d[1].max(d[2]));
     let mut field = if most.value() > 0.0 { length3(d.map(T::positive)) } else { most };
-    let mut side = q[0];
+    let mut side = q.size;
     for step in 0..MOST {
-        if step as f64 + 0.5 > q[1] {
+        if step as f64 + 0.5 > q.iterations {
             break;
         }
         // The position relative to the middle of the cell. The second least coordinate gives the depth in the bars.
@@ -44,10 +45,11 @@ pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 /// 2|z|σ + σ² where |w − z| ≤ σ. So if the ball of radius s around z² + c is on one side, the ball of radius √(|z|² +
 /// s) − |z| around z is too; the orbit gives these radii from the last step back to the first. The same argument
 /// finds every ball within such a ball, so the slope is at most 1.
-pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let constant = [q[1], q[2], q[3], q[4]];
+pub fn sdf_julia<T: Real>(p: [T; 3], q: &JuliaParams) -> T {
+    let [x, y, z] = q.constant;
+    let constant = [x, y, z, q.fourth];
     let escape = 0.5 + (0.25 + constant.iter().map(|c| c * c).sum::<f64>().sqrt()).sqrt();
-    let scale = q[0].max(1e-30) / escape;
+    let scale = q.radius.max(1e-30) / escape;
     let [x, y, z] = p.map(|v| v * scale.recip());
     let mut at = [x, y, z, T::constant(0.0)];
     let mut radii = [T::constant(0.0); MOST_SQUARES + 1];
@@ -56,7 +58,7 @@ pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
         let imaginary = at[1].squared() + at[2].squared() + at[3].squared();
         radii[last] = (at[0].squared() + imaginary).sqrt();
         // This far out the distance to the ball exceeds the bounds of later steps.
-        if last == MOST_SQUARES || last as f64 + 0.5 > q[5] || radii[last].value() > 4.0 * escape {
+        if last == MOST_SQUARES || last as f64 + 0.5 > q.iterations || radii[last].value() > 4.0 * escape {
             break;
         }
         let twice = at[0] * 2.0_f64;
@@ -80,13 +82,13 @@ pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 /// disc back through the steps. Folds bring points nearer to each other. The inversion stretches by k / r² if that is
 /// more than 1, so a distance of `s` from r inward becomes at most k / (r − s) − k / r; the step back solves this for
 /// `s`.
-pub fn sdf_kleinian<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (fold, inversion, thickness) = ([q[2], q[3], q[4]], q[5], q[6]);
-    let ball = length3(p) - q[0];
-    let scale = q[0].max(1e-30) / q[1];
+pub fn sdf_kleinian<T: Real>(p: [T; 3], q: &KleinianParams) -> T {
+    let KleinianParams { fold, inversion, thickness, .. } = *q;
+    let ball = length3(p) - q.radius;
+    let scale = q.radius.max(1e-30) / q.reach;
     let mut at = p.map(|v| v * scale.recip());
     let mut radii = [T::constant(0.0); MOST_FOLDS];
-    let count = (0..MOST_FOLDS).take_while(|step| *step as f64 + 0.5 < q[7]).count();
+    let count = (0..MOST_FOLDS).take_while(|step| *step as f64 + 0.5 < q.iterations).count();
     for radius in &mut radii[..count] {
         at = [0, 1, 2].map(|i| clamp(at[i], -fold[i], fold[i]) * 2.0_f64 - at[i]);
         *radius = length3(at);
@@ -125,19 +127,19 @@ pub fn sdf_kleinian<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 /// more than z, because at the first step it is z, and later z moves at least as far as c. The orbit gives these
 /// radii from the last step back to the first. For a ball within the ball L is the same or less, so the same argument
 /// finds every ball within such a ball, and the slope is at most 1.
-pub fn sdf_mandelbulb<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let power = (q[1] + 0.5).floor().clamp(2.0, 16.0);
+pub fn sdf_mandelbulb<T: Real>(p: [T; 3], q: &MandelbulbParams) -> T {
+    let power = (q.power + 0.5).floor().clamp(2.0, 16.0);
     let escape = (1.0 / (power - 1.0)).exp2();
     // This far out the distance to the ball exceeds the bounds of later steps: (2r − B)ⁿ ≥ 2rⁿ.
     let reach = escape / (2.0 - (1.0 / power).exp2());
-    let scale = q[0].max(1e-30) / escape;
+    let scale = q.radius.max(1e-30) / escape;
     let start = p.map(|v| v * scale.recip());
     let mut at = start;
     let mut orbit = [[T::constant(0.0); 2]; MOST_SQUARES + 1];
     let mut last = 0;
     loop {
         orbit[last] = [length3(at), length2([at[0], at[2]])];
-        if last == MOST_SQUARES || last as f64 + 0.5 > q[2] || orbit[last][0].value() > reach {
+        if last == MOST_SQUARES || last as f64 + 0.5 > q.iterations || orbit[last][0].value() > reach {
             break;
         }
         at = bulb_power(at, orbit[last][1], power as u32);

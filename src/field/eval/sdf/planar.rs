@@ -1,6 +1,7 @@
 //! Distances in the plane, for solids of revolution and prisms, and the payload type of shapes.
 
 use crate::eval::Real;
+use isolith_scene::PolygonSides;
 
 /// The payload of a shape.
 pub trait Payload {
@@ -107,12 +108,9 @@ pub fn edge<T: Real>(at: [T; 2], start: [f64; 2], end: [f64; 2]) -> T {
     if over.value() < 0.0 { -distance } else { distance }
 }
 
-/// The number of sides, then cosine and sine of half the angle of one side, see [`isolith_scene::Sides`].
-pub type Polygon = [f64; 3];
-
 /// Turns and mirrors the plane so that all sides of a regular polygon coincide with half of the one that faces X.
-pub fn sector<T: Real>(at: [T; 2], [sides, cosine, sine]: Polygon) -> [T; 2] {
-    let step = std::f64::consts::TAU / sides;
+pub fn sector<T: Real>(at: [T; 2], PolygonSides { count, cosine, sine }: PolygonSides) -> [T; 2] {
+    let step = std::f64::consts::TAU / count;
     let (s, c) = (step * (at[1].value().atan2(at[0].value()) / step).round()).sin_cos();
     let (x, y) = (at[0] * c + at[1] * s, (at[1] * c - at[0] * s).abs());
     // Rounding may leave the point behind the mirror: reflect it back.
@@ -121,8 +119,8 @@ pub fn sector<T: Real>(at: [T; 2], [sides, cosine, sine]: Polygon) -> [T; 2] {
 }
 
 /// A regular polygon, `radius` from its center to the middle of a side; one side faces X.
-pub fn polygon<T: Real>(at: [T; 2], sides: Polygon, radius: f64) -> T {
+pub fn polygon<T: Real>(at: [T; 2], sides: PolygonSides, radius: f64) -> T {
     let [x, y] = sector(at, sides);
-    let beside = [x - radius, (y - radius * sides[2] / sides[1]).positive()];
+    let beside = [x - radius, (y - radius * sides.sine / sides.cosine).positive()];
     if beside[0].value() > 0.0 { length2(beside) } else { beside[0] }
 }

@@ -93,6 +93,18 @@ impl Machine {
         self.run(handle, arguments.iter().map(|a| V::N(a.to_vec())).collect()).n().to_vec()
     }
 
+    /// The numbers of the members of the struct that a function returns.
+    pub fn members(&self, function: &str, arguments: &[&[f64]]) -> Vec<f64> {
+        fn numbers(value: &V) -> Vec<f64> {
+            match value {
+                V::N(n) => n.clone(),
+                V::L(members) => members.iter().flat_map(numbers).collect(),
+            }
+        }
+        let (handle, _) = self.module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)).unwrap();
+        numbers(&self.run(handle, arguments.iter().map(|a| V::N(a.to_vec())).collect()))
+    }
+
     fn run(&self, handle: Handle<Function>, arguments: Vec<V>) -> V {
         let function = &self.module.functions[handle];
         let values = vec![None; function.expressions.len()];
