@@ -50,7 +50,7 @@ fn shadow_ambient_direction(point: ShadowPoint, task: u32) -> AmbientRay {
         parts[i] = occlusion_cone(point.normal, i).w * occlusion_doubt(share);
         all += parts[i];
     }
-    let unit = sample_unit(point.pixel, task, settings.sample);
+    let unit = sample_around(point.pixel, settings.lights, OCCLUSION_RAYS * settings.sample + task - settings.lights);
     var left = unit.x * all;
     var chosen = OCCLUSION_CONES;
     var within = 0.0;
