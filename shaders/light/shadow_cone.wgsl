@@ -12,11 +12,6 @@ struct ShadowPoint {
     normal: vec3f,
 }
 
-// Number of rays to the environment in a sample; the first sample has none.
-fn shadow_ambient_rays() -> u32 {
-    return select(0u, OCCLUSION_RAYS, settings.cones > 0u && settings.sample > 0u);
-}
-
 // Where the share of a task is stored: of a light, or of a ray to the environment behind the cones.
 fn shadow_slot(task: u32) -> u32 {
     let of_ray = (settings.lights + 3u) / 4u * 4u + OCCLUSION_CONES + task - settings.lights;
@@ -30,6 +25,7 @@ fn shadow_march_begin(task: u32, is_ray: bool) -> ConeMarch {
     return march;
 }
 
+#if AMBIENT_RAYS
 // The direction of a ray to the environment.
 struct AmbientRay {
     // Point of the unit disc below it.
@@ -63,16 +59,21 @@ fn shadow_ambient_direction(point: ShadowPoint, task: u32) -> AmbientRay {
     return AmbientRay(occlusion_place(chosen, vec2f(clamp(within, 0.0, 1.0), unit.y)), chosen);
 }
 
+#end
+
 // Stores the share of a task; of a ray to the environment, which cone it was about and whether it is free.
 fn shadow_store_task(first: u32, point: ShadowPoint, task: u32, share: f32) {
     var stored = share;
+#if AMBIENT_RAYS
     if task >= settings.lights {
         let found = select(0u, OCCLUSION_FREE, share > 0.5);
         stored = f32(shadow_ambient_direction(point, task).cone + found) / 255.0;
     }
+#end
     shadow_store(first, shadow_slot(task), stored);
 }
 
+#if AMBIENT_RAYS
 // A ray of occlusion.
 fn shadow_ambient_ray(point: ShadowPoint, task: u32) -> SceneCone {
     let place = shadow_ambient_direction(point, task).place;
@@ -84,11 +85,14 @@ fn shadow_ambient_ray(point: ShadowPoint, task: u32) -> SceneCone {
     return SceneCone(start.origin, 0.0, along, settings.occlusion_radius, 0.0, 0.0, least, 0.0, point.normal);
 }
 
+#end
 // The cone to a light; it ends at 0 if there is nothing to do. `is_ray`: a ray to a point of it.
 fn shadow_cone(point: ShadowPoint, task: u32, is_ray: bool) -> SceneCone {
+#if AMBIENT_RAYS
     if task >= settings.lights {
         return shadow_ambient_ray(point, task);
     }
+#end
     let light = lights[task];
     let toward = light_toward(light, point.position);
     let spread = light_spread(light, toward.w);

@@ -1,6 +1,19 @@
 // What an invocation of the pass `shadow` leaves: shares, or its state. Needs `shares`, `states`,
 // `unfinished`, `settings` and `dispatch`.
 
+// The place of an invocation within its workgroup: eight that run together see a block of 4 by 2 pixels with shares, not a
+// row, so that they do more alike.
+fn shadow_lane(index: u32) -> vec2u {
+    return vec2u((index & 3u) | (index >> 1u & 4u), (index >> 2u & 1u) | (index >> 3u & 6u));
+}
+
+// Adds the evaluations of an invocation to those of the dispatch.
+fn shadow_count() {
+    if COUNTING {
+        atomicAdd(&unfinished[1], scene_evaluations);
+    }
+}
+
 // Place of the state of an invocation; `part`: 0 for shadows, 1 for occlusion.
 fn shadow_place(id: vec2u, part: u32) -> u32 {
     var words = SHADOW_WORDS;
