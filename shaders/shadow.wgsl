@@ -41,17 +41,12 @@
 
 @compute @workgroup_size(8, 8)
 fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let id = 8u * group.xy + shadow_lane(lane);
-    let pixel = dispatch.origin + id * settings.spacing;
+    let pixel = dispatch.origin + shadow_invocation(group, lane) * settings.spacing;
     let exists = all(pixel < dispatch.end);
-    let own = shadow_place(id, 0u);
+    let own = shadow_place(shadow_invocation(group, lane), 0u);
     let first = (pixel.y * view.width + pixel.x) * settings.stride;
     let point = shadow_point(pixel);
-    var all_tasks = settings.lights;
-#if AMBIENT_RAYS
-    all_tasks += OCCLUSION_RAYS;
-#end
-    let tasks = select(0u, all_tasks, point.depth < BACKGROUND);
+    let tasks = select(0u, shadow_tasks(), point.depth < BACKGROUND);
     var task = 0u;
     var march = shadow_march_begin(task, false);
 #if SCENE_COPIES
@@ -123,6 +118,5 @@ fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         shadow_save_copies(own, copies.left_at, false);
 #end
         shadow_leave(own, march, task, tasks);
-        shadow_count();
     }
 }

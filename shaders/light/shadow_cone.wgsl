@@ -12,6 +12,15 @@ struct ShadowPoint {
     normal: vec3f,
 }
 
+// Number of cones and rays of a pixel.
+fn shadow_tasks() -> u32 {
+    var tasks = settings.lights;
+#if AMBIENT_RAYS
+    tasks += OCCLUSION_RAYS;
+#end
+    return tasks;
+}
+
 // Where the share of a task is stored: of a light, or of a ray to the environment behind the cones.
 fn shadow_slot(task: u32) -> u32 {
     let of_ray = (settings.lights + 3u) / 4u * 4u + OCCLUSION_CONES + task - settings.lights;

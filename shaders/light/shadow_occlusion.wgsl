@@ -122,10 +122,9 @@ fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, foun
 // is open unless it has ended in another dispatch, which has stored its shares.
 @compute @workgroup_size(8, 8)
 fn shadow_occlusion(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let id = 8u * group.xy + shadow_lane(lane);
-    let pixel = dispatch.origin + id * settings.cone_spacing;
+    let pixel = dispatch.origin + shadow_invocation(group, lane) * settings.cone_spacing;
     var is_open = all(pixel < dispatch.end);
-    let own = shadow_place(id, 1u);
+    let own = shadow_place(shadow_invocation(group, lane), 1u);
     let point = shadow_point(pixel);
     let at = occlusion_point(point);
     var march = occlusion_begin(at, point.depth >= BACKGROUND);
@@ -200,6 +199,5 @@ fn shadow_occlusion(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
         shadow_save_copies(own, copies.left_at, copies.is_in);
 #end
         shadow_leave_occlusion(own, march, (pixel.y * view.width + pixel.x) * settings.stride);
-        shadow_count();
     }
 }

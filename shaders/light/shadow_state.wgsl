@@ -1,10 +1,10 @@
 // What an invocation of the pass `shadow` leaves: shares, or its state. Needs `shares`, `states`,
 // `unfinished`, `settings` and `dispatch`.
 
-// The place of an invocation within its workgroup: eight that run together see a block of 4 by 2 pixels with shares, not a
-// row, so that they do more alike.
-fn shadow_lane(index: u32) -> vec2u {
-    return vec2u((index & 3u) | (index >> 1u & 4u), (index >> 2u & 1u) | (index >> 3u & 6u));
+// The place of an invocation in its dispatch: eight that run together see a block of 4 by 2 pixels with shares, not a row, so
+// that they do more alike.
+fn shadow_invocation(group: vec3u, lane: u32) -> vec2u {
+    return 8u * group.xy + vec2u((lane & 3u) | (lane >> 1u & 4u), (lane >> 2u & 1u) | (lane >> 3u & 6u));
 }
 
 // Adds the evaluations of an invocation to those of the dispatch.
@@ -32,6 +32,7 @@ fn shadow_store(first: u32, slot: u32, share: f32) {
 
 // Stores the task of a pixel, and its state if that is not the last one.
 fn shadow_leave(own: u32, march: ConeMarch, task: u32, tasks: u32) {
+    shadow_count();
     states[own] = task;
     if task >= tasks {
         return;
@@ -100,6 +101,7 @@ fn shadow_occlusion_ended(march: OcclusionMarch) -> bool {
 
 // Stores the shares of the cones of occlusion, or the state if they have not ended.
 fn shadow_leave_occlusion(own: u32, march: OcclusionMarch, first: u32) {
+    shadow_count();
     let low = march.low;
     let high = march.high;
     states[own + 3u] = select(0u, 1u, march.ended);

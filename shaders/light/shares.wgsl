@@ -12,6 +12,7 @@ fn shares_word(pixel: vec2u, slot: u32) -> u32 {
 
 #if SPARSE_SHARES
 #include "light/sparse_shares.wgsl"
+#include "light/sparse_occlusion.wgsl"
 #else
 #include "light/occlusion_share.wgsl"
 
