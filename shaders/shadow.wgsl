@@ -1,6 +1,6 @@
 // Pass `shadow`: soft shadows of the pixels with hits, by cones against the whole scene. Each pixel
 // takes one cone after the other, one for each light that reaches it; in samples of still pictures
-// with occlusion, one ray to the environment comes last. An invocation that reaches its limits
+// with occlusion, rays to the environment come last: another pipeline has these (AMBIENT_RAYS). An invocation that reaches its limits
 // leaves its state to the next dispatch. The second entry point, occlusion by cones, is in
 // `light/shadow_occlusion.wgsl`.
 
@@ -31,7 +31,7 @@
 @group(2) @binding(3) var<storage, read_write> shares: array<u32>;
 // `shadow_place` words for each pixel of the part, and again for its occlusion.
 @group(2) @binding(4) var<storage, read_write> states: array<u32>;
-// Number of pixels that have not ended.
+// Number of pixels that have not ended, and of evaluations if pipelines count.
 @group(2) @binding(5) var<storage, read_write> unfinished: array<atomic<u32>>;
 @group(2) @binding(6) var<uniform> settings: ShadowSettings;
 @group(2) @binding(7) var<uniform> dispatch: DispatchParams;
@@ -40,13 +40,13 @@
 #include "light/shadow_occlusion.wgsl"
 
 @compute @workgroup_size(8, 8)
-fn shadow(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = dispatch.origin + id.xy * settings.spacing;
+fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let pixel = dispatch.origin + shadow_invocation(group, lane) * settings.spacing;
     let exists = all(pixel < dispatch.end);
-    let own = shadow_place(id.xy, 0u);
+    let own = shadow_place(shadow_invocation(group, lane), 0u);
     let first = (pixel.y * view.width + pixel.x) * settings.stride;
     let point = shadow_point(pixel);
-    let tasks = select(0u, settings.lights + shadow_ambient_rays(), point.depth < BACKGROUND);
+    let tasks = select(0u, shadow_tasks(), point.depth < BACKGROUND);
     var task = 0u;
     var march = shadow_march_begin(task, false);
 #if SCENE_COPIES

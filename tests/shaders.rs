@@ -49,10 +49,9 @@ fn sources() -> Vec<(&'static str, String)> {
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
     let shadowed = Options { shadowed: true, ..Options::default() };
-    let shade =
-        assemble_with("shade.wgsl", &all[0], shadowed, &["FULL_SHARES"]).unwrap_or_else(|error| panic!("{error}"));
+    let shade = assemble_with("shade.wgsl", &all[0], shadowed, &[]).unwrap_or_else(|error| panic!("{error}"));
     let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
-    let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS"]);
+    let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS", "AMBIENT_RAYS"]);
     let meshes = meshes.unwrap_or_else(|error| panic!("{error}"));
     let among = [all[0].clone(), all[1].clone()].map(|evaluator| {
         let text = assemble_with("shadow.wgsl", &evaluator, Options::default(), &["MESH_RAYS", SCENE_COPIES]);
@@ -69,11 +68,16 @@ fn sources() -> Vec<(&'static str, String)> {
         let text = |evaluator| assemble("trace.wgsl", evaluator, options).unwrap_or_else(|error| panic!("{error}"));
         [&all[0], &all[1]].map(|evaluator| ("trace.wgsl", text(evaluator)))
     });
-    let lit = [&["VEILS", "FULL_SHARES"], &["VEILS", "SPARSE_SHARES"]].map(|features| {
+    let lit = [&["VEILS"][..], &["VEILS", "SPARSE_SHARES"]].map(|features| {
         let text = assemble_with("shade.wgsl", &all[0], shadowed, features);
         ("shade.wgsl", text.unwrap_or_else(|error| panic!("{error}")))
     });
-    let dimmed = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS", SCENE_COPIES, "VEILS"]);
+    let dimmed = assemble_with(
+        "shadow.wgsl",
+        &all[1],
+        Options::default(),
+        &["MESH_RAYS", SCENE_COPIES, "VEILS", "AMBIENT_RAYS"],
+    );
     let dimmed = dimmed.unwrap_or_else(|error| panic!("{error}"));
     let shown = assemble_featured("shade.wgsl", &["COPIES"]).unwrap_or_else(|error| panic!("{error}"));
     plain
@@ -280,8 +284,17 @@ fn dispatch_params() -> Layout {
 
 fn shadow_settings() -> Layout {
     layout!(
-        "ShadowSettings" =
-            ShadowSettings { lights, stride, cones, sample, fineness, occlusion_radius, occlusion_strength, spacing }
+        "ShadowSettings" = ShadowSettings {
+            lights,
+            stride,
+            cones,
+            sample,
+            fineness,
+            occlusion_radius,
+            occlusion_strength,
+            spacing,
+            cone_spacing
+        }
     )
 }
 

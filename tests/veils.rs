@@ -6,9 +6,11 @@ use std::collections::HashSet;
 
 use glam::{DQuat, DVec2, DVec3};
 use isolith::field::debug_view::ViewMode;
+use isolith::field::light::arriving::{Arriving, SeenPoint};
 use isolith::field::pick::pick;
 use isolith::field::reference::image::render_reference;
-use isolith::field::{FlatScene, GBuffer, NO_LEAF, flatten};
+use isolith::field::scene_eval::SceneEvaluator;
+use isolith::field::{FlatScene, GBuffer, NO_LEAF, flatten, gpu_lights};
 use isolith::geometry::{Camera, Lens};
 use isolith::render::{EvalStrategy, Film};
 use isolith::scene::{
@@ -213,28 +215,52 @@ fn an_opaque_scene_needs_nothing_new() {
     assert_eq!((veiled(1.0), veiled(0.5)), (Vec::new(), vec![true]));
 }
 
+/// A white wall behind a pane beside the middle, in the light of a sun.
+fn behind_pane(opacity: f64, turn: f64) -> Scene {
+    let white = Material { specular_weight: 0.0, ..Material::new(MaterialId(2), "White", [0.8; 3]) };
+    let glass = Material { geometry_opacity: opacity, ..Material::new(MaterialId(3), "Glass", [0.8; 3]) };
+    let wall = object(slab([3.0, 3.0, 0.1]), 2).at(DVec3::new(0.0, 0.0, -1.0));
+    // Beside what the eye sees of the middle.
+    let pane = object(slab([0.6, 0.6, 0.05]), 3).at(DVec3::new(2.0, 0.0, 1.0));
+    let mut scene = scene(vec![white, glass], vec![wall, pane]);
+    scene.environment.shadowing = Shadowing { occlusion: false, ..Shadowing::default() };
+    let sun = isolith::scene::LightKind::Sun { strength: 2.0, angle: 0.5 };
+    let light = isolith::scene::Light { light: sun, ..isolith::scene::Light::default() };
+    let node = Node::new("Sun", NodeKind::Light(light)).rotated(DQuat::from_rotation_y(turn));
+    scene.insert(None, usize::MAX, node).expect("valid");
+    scene
+}
+
+/// The turn of a sun that shines through the pane onto the middle; the other way it shines past it.
+const THROUGH: f64 = std::f64::consts::FRAC_PI_4;
+
 #[test]
 fn light_passes_as_the_opacity_says() {
-    let lit = |opacity: f64, turn: f64| {
-        let white = Material { specular_weight: 0.0, ..Material::new(MaterialId(2), "White", [0.8; 3]) };
-        let glass = Material { geometry_opacity: opacity, ..Material::new(MaterialId(3), "Glass", [0.8; 3]) };
-        let wall = object(slab([3.0, 3.0, 0.1]), 2).at(DVec3::new(0.0, 0.0, -1.0));
-        // Beside what the eye sees of the middle.
-        let pane = object(slab([0.6, 0.6, 0.05]), 3).at(DVec3::new(2.0, 0.0, 1.0));
-        let mut scene = scene(vec![white, glass], vec![wall, pane]);
-        scene.environment.shadowing = Shadowing { occlusion: false, ..Shadowing::default() };
-        let sun = isolith::scene::LightKind::Sun { strength: 2.0, angle: 0.5 };
-        let light = isolith::scene::Light { light: sun, ..isolith::scene::Light::default() };
-        let node = Node::new("Sun", NodeKind::Light(light)).rotated(DQuat::from_rotation_y(turn));
-        scene.insert(None, usize::MAX, node).expect("valid");
-        middle(&shown(&scene), 1).x
-    };
-    let turn = (2.0_f64 / 2.0).atan();
-    let whole = lit(0.5, -turn);
-    assert!(whole > 0.1, "{whole}");
-    for opacity in [0.25, 0.75, 1.0] {
-        let share = lit(opacity, turn) / whole;
-        assert!((share - (1.0 - opacity)).abs() < 0.03, "{opacity}: {share}");
+    for samples in [1, 4] {
+        let lit = |opacity: f64, turn: f64| middle(&shown(&behind_pane(opacity, turn)), samples).x;
+        let whole = lit(0.5, -THROUGH);
+        assert!(whole > 0.1, "{whole}");
+        for opacity in [0.25, 0.75, 1.0] {
+            let share = lit(opacity, THROUGH) / whole;
+            assert!((share - (1.0 - opacity)).abs() < 0.03, "{opacity}, {samples} samples: {share}");
+        }
+    }
+}
+
+/// The reference follows a ray where its cone proves nothing, as the device does.
+#[test]
+fn rays_of_samples_pass_what_cones_pass() {
+    for (opacity, turn, expected) in [(0.25, THROUGH, 0.75), (1.0, THROUGH, 0.0), (0.25, -THROUGH, 1.0)] {
+        let shown = shown(&behind_pane(opacity, turn));
+        let lights = gpu_lights(&shown.flat, &shown.camera, [SIDE; 2]);
+        let eye = shown.camera.position;
+        for sample in 0..4 {
+            let position = DVec3::new(0.0, 0.0, -0.9) - eye;
+            let point = SeenPoint { eye, position, normal: DVec3::Z, footprint: 1e-3, pixel: [24; 2], sample };
+            let arriving = Arriving::at(&mut SceneEvaluator::new(&shown.flat), &[], &lights, &point).expect("rays end");
+            let share = arriving.shadow_share(0);
+            assert!((share - expected).abs() < 1e-9, "{opacity}, sample {sample}: {share}");
+        }
     }
 }
 

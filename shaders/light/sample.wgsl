@@ -1,5 +1,5 @@
-// Points of a light for the rays of still pictures. Counterpart of `light_sample` in
-// `src/field/light/shadow.rs`.
+// Points of a light, and directions to the environment, for the rays of still pictures. Counterpart of `light_sample` and
+// `around_sample` in `src/field/light/shadow.rs`.
 
 // Hash of three words (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020).
 fn sample_hash(seed: vec3u) -> vec3u {
@@ -21,7 +21,30 @@ fn sample_unit(pixel: vec2u, light: u32, sample: u32) -> vec2f {
     return vec2f(shifted >> vec2u(8u)) / 16777216.0;
 }
 
-// The same on the unit disc.
+// Digits of a number in either base; more repeat.
+const SAMPLE_DIGITS: u32 = 8u;
+
+// The digits of a number in this base, mirrored behind the point.
+fn sample_mirrored(number: u32, base: u32) -> f32 {
+    var left = number;
+    var digit = 1.0;
+    var sum = 0.0;
+    for (var i = 0u; i < SAMPLE_DIGITS; i += 1u) {
+        digit /= f32(base);
+        sum += digit * f32(left % base);
+        left /= base;
+    }
+    return sum;
+}
+
+// Point of the unit square for a ray to the environment: Halton's sequence with the bases 5 and 7, for the places in the
+// pixel are that with 2 and 3; all rays of a pixel are of one sequence.
+fn sample_around(pixel: vec2u, key: u32, ray: u32) -> vec2f {
+    let shift = vec2f(sample_hash(vec3u(pixel, key)).xy >> vec2u(8u)) / 16777216.0;
+    return fract(shift + vec2f(sample_mirrored(ray, 5u), sample_mirrored(ray, 7u)));
+}
+
+// The same as `sample_unit` on the unit disc.
 fn sample_disc(pixel: vec2u, light: u32, sample: u32) -> vec2f {
     let place = sample_unit(pixel, light, sample);
     let radius = sqrt(place.x);

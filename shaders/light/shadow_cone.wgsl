@@ -12,9 +12,13 @@ struct ShadowPoint {
     normal: vec3f,
 }
 
-// Number of rays to the environment in a sample; the first sample has none.
-fn shadow_ambient_rays() -> u32 {
-    return select(0u, OCCLUSION_RAYS, settings.cones > 0u && settings.sample > 0u);
+// Number of cones and rays of a pixel.
+fn shadow_tasks() -> u32 {
+    var tasks = settings.lights;
+#if AMBIENT_RAYS
+    tasks += OCCLUSION_RAYS;
+#end
+    return tasks;
 }
 
 // Where the share of a task is stored: of a light, or of a ray to the environment behind the cones.
@@ -30,6 +34,7 @@ fn shadow_march_begin(task: u32, is_ray: bool) -> ConeMarch {
     return march;
 }
 
+#if AMBIENT_RAYS
 // The direction of a ray to the environment.
 struct AmbientRay {
     // Point of the unit disc below it.
@@ -50,7 +55,7 @@ fn shadow_ambient_direction(point: ShadowPoint, task: u32) -> AmbientRay {
         parts[i] = occlusion_cone(point.normal, i).w * occlusion_doubt(share);
         all += parts[i];
     }
-    let unit = sample_unit(point.pixel, task, settings.sample);
+    let unit = sample_around(point.pixel, settings.lights, OCCLUSION_RAYS * settings.sample + task - settings.lights);
     var left = unit.x * all;
     var chosen = OCCLUSION_CONES;
     var within = 0.0;
@@ -63,16 +68,21 @@ fn shadow_ambient_direction(point: ShadowPoint, task: u32) -> AmbientRay {
     return AmbientRay(occlusion_place(chosen, vec2f(clamp(within, 0.0, 1.0), unit.y)), chosen);
 }
 
+#end
+
 // Stores the share of a task; of a ray to the environment, which cone it was about and whether it is free.
 fn shadow_store_task(first: u32, point: ShadowPoint, task: u32, share: f32) {
     var stored = share;
+#if AMBIENT_RAYS
     if task >= settings.lights {
         let found = select(0u, OCCLUSION_FREE, share > 0.5);
         stored = f32(shadow_ambient_direction(point, task).cone + found) / 255.0;
     }
+#end
     shadow_store(first, shadow_slot(task), stored);
 }
 
+#if AMBIENT_RAYS
 // A ray of occlusion.
 fn shadow_ambient_ray(point: ShadowPoint, task: u32) -> SceneCone {
     let place = shadow_ambient_direction(point, task).place;
@@ -84,11 +94,14 @@ fn shadow_ambient_ray(point: ShadowPoint, task: u32) -> SceneCone {
     return SceneCone(start.origin, 0.0, along, settings.occlusion_radius, 0.0, 0.0, least, 0.0, point.normal);
 }
 
+#end
 // The cone to a light; it ends at 0 if there is nothing to do. `is_ray`: a ray to a point of it.
 fn shadow_cone(point: ShadowPoint, task: u32, is_ray: bool) -> SceneCone {
+#if AMBIENT_RAYS
     if task >= settings.lights {
         return shadow_ambient_ray(point, task);
     }
+#end
     let light = lights[task];
     let toward = light_toward(light, point.position);
     let spread = light_spread(light, toward.w);

@@ -121,10 +121,10 @@ fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, foun
 // Each round finds the next evaluation first: invocations that run together then evaluate together. A pixel
 // is open unless it has ended in another dispatch, which has stored its shares.
 @compute @workgroup_size(8, 8)
-fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = dispatch.origin + id.xy * settings.spacing;
+fn shadow_occlusion(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let pixel = dispatch.origin + shadow_invocation(group, lane) * settings.cone_spacing;
     var is_open = all(pixel < dispatch.end);
-    let own = shadow_place(id.xy, 1u);
+    let own = shadow_place(shadow_invocation(group, lane), 1u);
     let point = shadow_point(pixel);
     let at = occlusion_point(point);
     var march = occlusion_begin(at, point.depth >= BACKGROUND);

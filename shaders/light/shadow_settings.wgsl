@@ -15,8 +15,10 @@ struct ShadowSettings {
     fineness: f32,
     occlusion_radius: f32,
     occlusion_strength: f32,
-    // Pixels from one with shares to the next, along each axis: 1, or 2 while something moves.
+    // Pixels from one with shares of lights to the next, along each axis: 1, or more while something moves.
     spacing: u32,
+    // The same for the cones of occlusion.
+    cone_spacing: u32,
 }
 
 // Words of the state of an unfinished pixel: of its shadows, and again of its occlusion. The last

@@ -1,6 +1,19 @@
 // What an invocation of the pass `shadow` leaves: shares, or its state. Needs `shares`, `states`,
 // `unfinished`, `settings` and `dispatch`.
 
+// The place of an invocation in its dispatch: eight that run together see a block of 4 by 2 pixels with shares, not a row, so
+// that they do more alike.
+fn shadow_invocation(group: vec3u, lane: u32) -> vec2u {
+    return 8u * group.xy + vec2u((lane & 3u) | (lane >> 1u & 4u), (lane >> 2u & 1u) | (lane >> 3u & 6u));
+}
+
+// Adds the evaluations of an invocation to those of the dispatch.
+fn shadow_count() {
+    if COUNTING {
+        atomicAdd(&unfinished[1], scene_evaluations);
+    }
+}
+
 // Place of the state of an invocation; `part`: 0 for shadows, 1 for occlusion.
 fn shadow_place(id: vec2u, part: u32) -> u32 {
     var words = SHADOW_WORDS;
@@ -19,6 +32,7 @@ fn shadow_store(first: u32, slot: u32, share: f32) {
 
 // Stores the task of a pixel, and its state if that is not the last one.
 fn shadow_leave(own: u32, march: ConeMarch, task: u32, tasks: u32) {
+    shadow_count();
     states[own] = task;
     if task >= tasks {
         return;
@@ -87,6 +101,7 @@ fn shadow_occlusion_ended(march: OcclusionMarch) -> bool {
 
 // Stores the shares of the cones of occlusion, or the state if they have not ended.
 fn shadow_leave_occlusion(own: u32, march: OcclusionMarch, first: u32) {
+    shadow_count();
     let low = march.low;
     let high = march.high;
     states[own + 3u] = select(0u, 1u, march.ended);

@@ -168,6 +168,26 @@ impl<'a> SceneEvaluator<'a> {
         Ok(nearest.map(hit))
     }
 
+    /// The share of light that passes all that is in the way of a ray.
+    ///
+    /// # Errors
+    /// A march could not be followed to its end.
+    pub fn passed(&mut self, ray: &Ray, limits: RayLimits) -> Result<f64, TraceError> {
+        if self.translucency.is_empty() {
+            return Ok(if self.ray(ray, limits)?.is_none() { 1.0 } else { 0.0 });
+        }
+        let mut share = 1.0;
+        for SceneVisit { entry, exit, component } in self.visits(ray, limits, 0.0) {
+            let mut met = None;
+            self.follow(component, ray, RayLimits { near: entry, far: exit }, &mut met)?;
+            share *= met.map_or(1.0, |_| self.translucency(component));
+            if share == 0.0 {
+                break;
+            }
+        }
+        Ok(share)
+    }
+
     /// The scene.
     pub fn flat(&self) -> &'a FlatScene {
         self.flat

@@ -13,7 +13,7 @@ pub fn pixel_jitter(sample: u32) -> DVec2 {
 }
 
 /// The digits of a number in this base, mirrored behind the point.
-fn radical_inverse(mut number: u32, base: u32) -> f64 {
+pub fn radical_inverse(mut number: u32, base: u32) -> f64 {
     let (mut inverse, mut digit) = (0.0, 1.0);
     while number > 0 {
         digit /= f64::from(base);

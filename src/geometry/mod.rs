@@ -16,7 +16,7 @@ pub use aabb::Aabb;
 pub use arc::{ArcPiece, biarc, smooth_curve, straight_curve};
 pub use arc_union::{TooDense, arc_union};
 pub use camera::Camera;
-pub use jitter::pixel_jitter;
+pub use jitter::{pixel_jitter, radical_inverse};
 pub use lens::{Lens, SampleView};
 pub use ray::Ray;
 pub use transform::{Transform, singular_values};

@@ -227,7 +227,7 @@ impl Renderer {
         let lights = gpu_lights(flat, &view.camera, size);
         let casters = lights.iter().filter(|light| light.cast_shadows == 1).count();
         let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
-        let shadows = shadows.map(|work| work.spaced(if self.sparse_light { 2 } else { 1 }));
+        let shadows = shadows.map(|work| if self.sparse_light { work.sparse() } else { work });
         let shadows = shadows.filter(|work| self.shadows_are_ready(flat, work));
         let tiled = bytes_of_light_tiles(lights.len(), size, limit).is_some();
         let of_shadows = shadows.map_or(0.0, |shadows| shadows.per_pixel());
@@ -286,7 +286,7 @@ impl Renderer {
             self.scene.upload(&self.gpu, flat, (camera.position, &standpoints), &chosen.trees, &chosen.keys);
         let parts = (&mut self.passes, &self.scene, &mut self.resources);
         let seen = SeenScene { flat, meshes, camera, size, standpoints: &standpoints };
-        let shadows_are_new = shadows::upload(&self.gpu, parts, seen, (&chosen, shadows), Self::options(&self.gpu))?;
+        let shadows_are_new = shadows::upload(&self.gpu, parts, seen, (&chosen, shadows), self.pipelines.options())?;
         if self.resources.upload(&self.gpu, flat, (&lights, &materials), camera, size, &plan)
             || scene_is_new
             || shadows_are_new
@@ -295,7 +295,7 @@ impl Renderer {
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size)?;
         let shadowed = self.resources.shadows.used.is_on();
-        let sparse = shadowed && self.resources.shadows.used.spacing > 1;
+        let sparse = shadowed && self.resources.shadows.used.is_sparse();
         let tiled = self.resources.light_tiles().is_some();
         let features = ShadeFeatures { tiled, sparse, ..ShadeFeatures::new(flat, &lights, &materials.all, shadowed) };
         // Samples have shares for every pixel.

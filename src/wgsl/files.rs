@@ -44,7 +44,7 @@ pub fn library(entry: &str) -> Result<String, ShaderError> {
 }
 
 /// Like [`library`], where `generated` returns the text of files that do not exist. The part between `#if` and `#end`
-/// remains only if `features` has the word behind `#if`.
+/// remains only if `features` has the word behind `#if`; a part between `#else` and `#end` only if not.
 pub fn resolve(
     entry: &str,
     features: &[&str],
@@ -84,6 +84,7 @@ impl Resolver<'_> {
         for line in text.lines() {
             match (line, line.strip_prefix("#if ")) {
                 (_, Some(feature)) => is_wanted = self.features.contains(&feature),
+                ("#else", _) => is_wanted = !is_wanted,
                 ("#end", _) => is_wanted = true,
                 _ if is_wanted => self.line(line, name)?,
                 _ => {}
@@ -115,5 +116,13 @@ mod tests {
         assert!(error.to_string().contains("no_such.wgsl"), "{error}");
         let error = library("field/tape_surface.wgsl").expect_err("it needs what is generated");
         assert!(error.to_string().contains("generated/"), "{error}");
+    }
+
+    #[test]
+    fn one_of_two_parts_remains() {
+        let text = "before\n#if A\none\n#else\nother\n#end\nbehind\n";
+        let with = |features: &[&str]| resolve("made.wgsl", features, &|_| Some(text.to_owned()));
+        assert_eq!(with(&["A"]).as_deref(), Ok("before\none\nbehind\n"));
+        assert_eq!(with(&["B"]).as_deref(), Ok("before\nother\nbehind\n"));
     }
 }

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use super::occlusion::{AmbientRay, OCCLUSION_RAYS, Occlusion, occlusion_shares, occlusion_trust};
 use super::shadow::{
-    ShadowCone, ShadowProof, cone_fineness, light_extent, light_is_seen, light_sample, light_toward, shadow_share,
-    unit_sample,
+    ShadowCone, ShadowProof, around_sample, cone_fineness, light_extent, light_passed, light_sample, light_toward,
+    shadow_share,
 };
 use crate::lights::GpuLight;
 use crate::mesh_rays::{Meshes, mesh_rays_blocked};
@@ -81,11 +81,11 @@ impl Arriving {
             let mut visible = visibility;
             if point.sample > 0 {
                 let mut of_rays = 0.0;
-                for task in shadowed..shadowed + OCCLUSION_RAYS {
-                    let unit = unit_sample(point.pixel, task, point.sample);
+                for ray in 0..OCCLUSION_RAYS {
+                    let unit = around_sample(point.pixel, shadowed, OCCLUSION_RAYS * point.sample + ray);
                     let AmbientRay { direction, shares } = AmbientRay::new(point.normal, &shares, unit);
                     let ray = Ray { origin: start(point, direction), direction };
-                    let is_free = evaluator.ray(&ray, RayLimits { near: 0.0, far: radius })?.is_none()
+                    let is_free = evaluator.passed(&ray, RayLimits { near: 0.0, far: radius })? > 0.5
                         && !mesh_rays_blocked(evaluator.flat(), meshes, &ray, 0.0, radius);
                     of_rays += shares[usize::from(is_free)] / f64::from(OCCLUSION_RAYS);
                 }
@@ -122,7 +122,7 @@ fn light_share(
     let share = if found.proof != ShadowProof::None || point.sample == 0 {
         found.share
     } else {
-        f64::from(u8::from(light_is_seen(evaluator, &cone, place)?))
+        light_passed(evaluator, &cone, place)?
     };
     let is_blocked = share > 0.0 && mesh_rays_blocked(evaluator.flat(), meshes, &cone.ray_to(place), 0.0, cone.far);
     Ok(if is_blocked { 0.0 } else { share })

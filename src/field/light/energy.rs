@@ -11,8 +11,17 @@ use crate::FlatMaterial;
 use crate::mixture::SurfaceMaterial;
 use isolith_scene::Material;
 
-/// Samples along each side of the square, for each kind of sample.
-const SAMPLES: u32 = 80;
+/// The samples of an integral, for each kind of sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Samples {
+    /// Along each side of the square.
+    pub side: u32,
+    /// Turns them, in their distance: other shifts err differently.
+    pub shift: [f64; 2],
+}
+
+/// Those of most tests.
+pub(super) const SAMPLES: Samples = Samples { side: 80, shift: [0.0; 2] };
 
 /// The direction to the eye at this cosine from the normal, which is Z.
 pub(super) fn eye(cosine: f64) -> DVec3 {
@@ -20,8 +29,13 @@ pub(super) fn eye(cosine: f64) -> DVec3 {
 }
 
 /// The light that arrives at the eye under uniform light of 1: the integral of `reflected` / π over the hemisphere, by
-/// samples of both lobes and of the cosine, each weighted by the sum of the densities (Veach 1997).
-pub(super) fn energy(to_eye: DVec3, alphas: [f64; 2], reflected: impl Fn(DVec3) -> DVec3) -> DVec3 {
+/// samples of both lobes and of the cosine, each weighted by the sum of the densities (Veach 1997). The normal is Z.
+pub(super) fn energy(
+    to_eye: DVec3,
+    alphas: [f64; 2],
+    Samples { side, shift }: Samples,
+    reflected: impl Fn(DVec3) -> DVec3,
+) -> DVec3 {
     let mut sum = DVec3::ZERO;
     let mut add = |to_light: DVec3| {
         if to_light.z > 0.0 {
@@ -29,8 +43,9 @@ pub(super) fn energy(to_eye: DVec3, alphas: [f64; 2], reflected: impl Fn(DVec3) 
             sum += reflected(to_light) * FRAC_1_PI / (lobes + to_light.z * FRAC_1_PI);
         }
     };
-    for at in 0..SAMPLES * SAMPLES {
-        let unit = [at % SAMPLES, at / SAMPLES].map(|i| (f64::from(i) + 0.5) / f64::from(SAMPLES));
+    for at in 0..side * side {
+        let unit = [at % side, at / side].map(|i| f64::from(i) + 0.5);
+        let unit = [0, 1].map(|i| ((unit[i] + shift[i]) / f64::from(side)).fract());
         for alpha in alphas {
             let half = half_vector(to_eye, alpha, unit);
             add(2.0 * to_eye.dot(half) * half - to_eye);
@@ -39,7 +54,7 @@ pub(super) fn energy(to_eye: DVec3, alphas: [f64; 2], reflected: impl Fn(DVec3) 
         let radius = unit[1].sqrt();
         add(DVec3::new(radius * cosine, radius * sine, (1.0 - unit[1]).sqrt()));
     }
-    sum / f64::from(SAMPLES * SAMPLES)
+    sum / f64::from(side * side)
 }
 
 fn point(material: SurfaceMaterial, to_eye: DVec3) -> ShadingPoint {
@@ -50,7 +65,7 @@ fn point(material: SurfaceMaterial, to_eye: DVec3) -> ShadingPoint {
 fn furnace(material: SurfaceMaterial, cosine: f64) -> DVec3 {
     let seen = point(material, eye(cosine));
     let layers = layers_of(&material, cosine);
-    energy(seen.to_eye, [layers.alpha, layers.coat_alpha], |to_light| brdf_direct(&seen, to_light))
+    energy(seen.to_eye, [layers.alpha, layers.coat_alpha], SAMPLES, |to_light| brdf_direct(&seen, to_light))
 }
 
 /// White, with nothing that takes light away.
@@ -104,7 +119,7 @@ fn a_metal_that_reflects_once_fails_the_furnace() {
     let once = Layers { facing: DVec3::ONE, ..Layers { alpha: 1.0, coat_alpha: 1.0, ..Layers::default() } };
     for cosine in COSINES {
         let to_eye = eye(cosine);
-        let single = energy(to_eye, [1.0; 2], |to_light| {
+        let single = energy(to_eye, [1.0; 2], SAMPLES, |to_light| {
             layers_direct(&once, DVec3::Z, to_eye, to_light, (to_eye + to_light).normalize())
         });
         assert!(single.x < 0.8, "{single}");

@@ -16,7 +16,7 @@ use crate::lights::GpuLight;
 use crate::reference::trace::TraceError;
 use crate::scene_eval::{RayLimits, SceneCounts, SceneEvaluator, SceneVisit};
 use crate::{Component, FlatScene};
-use isolith_geometry::Ray;
+use isolith_geometry::{Ray, radical_inverse};
 
 /// Least tangent of a cone, 0.06 degrees: a narrower one could not be marched by its radius.
 pub const LEAST_SPREAD: f64 = 1e-3;
@@ -335,11 +335,22 @@ pub fn light_sample(pixel: [u32; 2], light: u32, sample: u32) -> [f64; 2] {
 }
 
 /// The same in the unit square.
-pub fn unit_sample([x, y]: [u32; 2], light: u32, sample: u32) -> [f64; 2] {
+fn unit_sample([x, y]: [u32; 2], light: u32, sample: u32) -> [f64; 2] {
     let hash = sample_hash([x, y, light]);
     let place =
         |hash: u32, step: u32| f64::from(hash.wrapping_add(step.wrapping_mul(sample)) >> 8) / f64::from(1 << 24);
     [place(hash[0], 0xc13f_a9a9), place(hash[1], 0x91e1_0da5)]
+}
+
+/// A point of the unit square for a ray to the environment: Halton's sequence with the bases 5 and 7, for the places in the
+/// pixel are that with 2 and 3; all rays of a pixel are of one sequence. Rays of two sequences by R2 left a 99th percentile
+/// of the error of 0.025 after 256 samples, these 0.019.
+pub fn around_sample([x, y]: [u32; 2], key: u32, ray: u32) -> [f64; 2] {
+    let [a, b, _] = sample_hash([x, y, key]);
+    [(a, 5), (b, 7)].map(|(hash, base)| {
+        let shift = f64::from(hash >> 8) / f64::from(1 << 24);
+        (shift + radical_inverse(ray, base)).fract()
+    })
 }
 
 /// Hash of three words (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020).
@@ -379,6 +390,14 @@ pub fn light_is_seen(
 ) -> Result<bool, TraceError> {
     let limits = RayLimits { near: 0.0, far: cone.far };
     Ok(evaluator.ray(&cone.ray_to(place), limits)?.is_none())
+}
+
+/// The share of the light of a point of the light's disc that what is between lets pass.
+///
+/// # Errors
+/// A ray could not be followed to its end.
+pub fn light_passed(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone, place: [f64; 2]) -> Result<f64, TraceError> {
+    evaluator.passed(&cone.ray_to(place), RayLimits { near: 0.0, far: cone.far })
 }
 
 /// Point `i` of `count` that cover the unit disc evenly (Vogel, "A better way to construct the sunflower head", 1979).

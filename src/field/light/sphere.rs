@@ -1,17 +1,15 @@
 //! The presets on a ball in an environment, as pictures: what the renderer computes from prefiltered maps against the
 //! integral over all directions. The ball is convex, so that no light is reflected twice.
 
-use std::f64::consts::{FRAC_1_PI, TAU};
-
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::brdf::{ShadingPoint, brdf_direct};
+use super::energy::{Samples, energy};
 use super::environment::{EnvironmentLight, environment_background, environment_on};
 use super::environment_map::{EnvironmentMap, PlacedMap};
 use super::flip::{PIXELS_PER_DEGREE, Picture, flip};
 use super::layers::layers_of;
-use super::lobes::{density, half_vector};
 use crate::FlatMaterial;
 use crate::mixture::SurfaceMaterial;
 use isolith_scene::{EnvironmentImage, Material, material_presets};
@@ -55,36 +53,17 @@ fn seen(pixel: usize) -> (DVec3, Option<DVec3>) {
     (direction, (square > 0.0).then(|| eye + direction * (nearest - square.sqrt())))
 }
 
-/// The integral of what is reflected toward the eye, by samples of each lobe and of the cosine, weighted by the sum of their
-/// densities (Veach 1997). `shift` turns the samples, so that neighbors err differently.
+/// The integral of what is reflected toward the eye. `shift` turns the samples, so that neighbors err differently.
 fn integral(point: &ShadingPoint, environment: &EnvironmentLight<'_>, shift: [f64; 2]) -> DVec3 {
     let normal = point.normal;
     let side = normal.any_orthonormal_vector();
     let world = DMat3::from_cols(side, normal.cross(side), normal);
     let to_eye = world.transpose() * point.to_eye;
     let layers = layers_of(&point.material, to_eye.z);
-    let alphas = [layers.alpha, layers.coat_alpha];
-    let mut sum = DVec3::ZERO;
-    let mut add = |to_light: DVec3| {
-        if to_light.z > 0.0 {
-            let lobes: f64 = alphas.iter().map(|alpha| density(to_eye, *alpha, to_light)).sum();
-            let there = world * to_light;
-            let light = environment_background(there, environment) * brdf_direct(point, there);
-            sum += light * FRAC_1_PI / (lobes + to_light.z * FRAC_1_PI);
-        }
-    };
-    for at in 0..SAMPLES * SAMPLES {
-        let unit = [at % SAMPLES, at / SAMPLES].map(|i| f64::from(i) + 0.5);
-        let unit = [0, 1].map(|i| ((unit[i] + shift[i]) / f64::from(SAMPLES)).fract());
-        for alpha in alphas {
-            let half = half_vector(to_eye, alpha, unit);
-            add(2.0 * to_eye.dot(half) * half - to_eye);
-        }
-        let (sine, cosine) = (TAU * unit[0]).sin_cos();
-        let radius = unit[1].sqrt();
-        add(DVec3::new(radius * cosine, radius * sine, (1.0 - unit[1]).sqrt()));
-    }
-    sum / f64::from(SAMPLES * SAMPLES)
+    energy(to_eye, [layers.alpha, layers.coat_alpha], Samples { side: SAMPLES, shift }, |to_light| {
+        let there = world * to_light;
+        environment_background(there, environment) * brdf_direct(point, there)
+    })
 }
 
 /// The picture, if the ball reflects this.

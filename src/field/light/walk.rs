@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 
 use super::brdf::{ShadingPoint, brdf_direct};
 use super::display::display_encode;
-use super::energy::{energy, eye};
+use super::energy::{SAMPLES, energy, eye};
 use super::layers::layers_of;
 use super::lobes::{half_vector, smith};
 use crate::FlatMaterial;
@@ -163,8 +163,9 @@ fn difference(material: &SurfaceMaterial) -> f64 {
         let to_eye = eye(cosine);
         let point = ShadingPoint { material: *material, position: DVec3::ZERO, normal: DVec3::Z, to_eye };
         let layers = layers_of(material, cosine);
-        let model =
-            energy(to_eye, [layers.alpha, layers.coat_alpha], |to_light| brdf_direct(&point, to_light) * lit(to_light));
+        let model = energy(to_eye, [layers.alpha, layers.coat_alpha], SAMPLES, |to_light| {
+            brdf_direct(&point, to_light) * lit(to_light)
+        });
         let walks: DVec3 = (0..WALKS).map(|_| walk(to_eye, material, &lit, &mut random)).sum();
         let off = display_encode(model) - display_encode(walks / f64::from(WALKS));
         sum += off.abs().element_sum() / 3.0;

@@ -77,7 +77,6 @@ impl ShadeFeatures {
             (tiled, "LIGHT_TILES"),
             (veiled, "VEILS"),
             (sparse, "SPARSE_SHARES"),
-            (!sparse, "FULL_SHARES"),
         ];
         let features: Vec<&str> = used.into_iter().filter_map(|(is_used, name)| is_used.then_some(name)).collect();
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, &features)

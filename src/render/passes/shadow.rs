@@ -13,6 +13,7 @@ use crate::renderer::resources::Bound;
 use crate::resources::hierarchy::{HierarchyBuffers, Obstacles};
 use crate::resources::layouts::*;
 use crate::resources::mesh_rays::MeshRayBuffer;
+use crate::resources::shadows::SHADOW_PARTS;
 use crate::resources::uniforms::{DispatchParams, UNIFORM_STRIDE};
 use isolith_wgsl::{Options, ShaderError};
 
@@ -38,7 +39,7 @@ pub struct ShadowPass {
 }
 
 impl ShadowPass {
-    /// Chooses the pipelines for a scene, and builds what is missing. `used`: which entry points are.
+    /// Chooses the pipelines for a scene, and builds what is missing. `used`: which parts are.
     ///
     /// # Errors
     /// A shader file is missing.
@@ -46,13 +47,13 @@ impl ShadowPass {
         &mut self,
         device: &wgpu::Device,
         kind: ShadowKind,
-        used: [bool; 2],
+        used: [bool; SHADOW_PARTS],
         options: Options,
     ) -> Result<(), ShaderError> {
         let queried = self.hierarchies[layout_of(kind.obstacles)].clone();
         match self.pipelines.iter().position(|one| one.kind.serves(&kind)) {
             Some(at) => self.pipelines[..=at].rotate_right(1),
-            None => self.pipelines.insert(0, ShadowPipelines { kind, pipelines: [None, None] }),
+            None => self.pipelines.insert(0, ShadowPipelines { kind, pipelines: Default::default() }),
         }
         self.pipelines.truncate(MOST_PIPELINES);
         let Self { layouts, own, pipelines, .. } = self;
@@ -67,9 +68,8 @@ impl ShadowPass {
 
     /// Whether the pipelines for a scene are there. If not, they are built beside the frames; what fails there is built again by
     /// the frame, which reports why.
-    pub fn is_ready(&mut self, gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Options) -> bool {
+    pub fn is_ready(&mut self, gpu: &Gpu, kind: &ShadowKind, used: [bool; SHADOW_PARTS], options: Options) -> bool {
         let has = |one: &ShadowPipelines| used.iter().zip(&one.pipelines).all(|(used, own)| !used || own.is_some());
-        // Samples of a still follow rays to the environment with the pipeline of the lights.
         let is_there = self.pipelines.iter().any(|one| one.kind.serves(kind) && has(one));
         if is_there || self.orders.has_failed(kind, used) {
             return true;
@@ -135,12 +135,13 @@ impl FramePass for ShadowPass {
         let used = recorder.resources.shadows.used.parts();
         let (scene, [_, own], [_, hierarchy]) = (recorder.scene(), recorder.groups(0), recorder.groups(1));
         for at in dispatches {
-            let spacing = recorder.resources.shadows.used.spacing;
-            let [x, y] = recorder.frame.plan.dispatches[at].tiles().map(|tiles| tiles.div_ceil(spacing));
+            let spacings = recorder.resources.shadows.used.spacings();
+            let tiles = recorder.frame.plan.dispatches[at].tiles();
             const { assert!(TILE == 8, "the size of a workgroup") };
             // Occlusion first: rays to the environment look where its cones are in doubt.
-            for (pipeline, _) in pipelines.iter().zip(used).rev().filter(|(_, used)| *used) {
-                let (Some(pipeline), pass) = (pipeline, recorder.open()) else { continue };
+            for part in [1, 0, 2].into_iter().filter(|part| used[*part]) {
+                let (Some(pipeline), pass) = (&pipelines[part], recorder.open()) else { continue };
+                let [x, y] = tiles.map(|tiles| tiles.div_ceil(spacings[part]));
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(1, scene, &[0, 0]);
                 pass.set_bind_group(2, own, &[(at * UNIFORM_STRIDE) as u32]);

@@ -129,6 +129,11 @@ struct CompileWorker {
 }
 
 impl PipelineCache {
+    /// Options of all pipelines; the features of scenes are not among them.
+    pub fn options(&self) -> Options {
+        self.shared.options
+    }
+
     /// A cache with an interpreter that knows no shapes yet.
     pub fn new(gpu: &Gpu, layouts: &Layouts, options: Options) -> Result<Self, ShaderError> {
         let field = FieldLayouts::new(&gpu.device);

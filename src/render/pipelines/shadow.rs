@@ -12,7 +12,7 @@ use crate::recipe::Pass;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::hierarchy::{HierarchyBuffers, Obstacles};
 use crate::resources::layouts::*;
-use crate::resources::shadows::ShadowSettings;
+use crate::resources::shadows::{SHADOW_PARTS, ShadowSettings};
 use crate::resources::targets::Targets;
 use crate::resources::uniforms::DispatchParams;
 use isolith_field::FlatScene;
@@ -33,8 +33,11 @@ bindings! {
     }
 }
 
-/// Entry points: shadows, and occlusion.
-const ENTRY_POINTS: [&str; 2] = ["shadow", "shadow_occlusion"];
+/// Entry points of the parts: shadows, occlusion, and shadows with rays to the environment, which a picture of something
+/// that moves has not.
+const ENTRY_POINTS: [&str; SHADOW_PARTS] = ["shadow", "shadow_occlusion", "shadow"];
+/// The part with rays to the environment.
+const WITH_RAYS: usize = 2;
 
 /// What pipelines depend on: they serve all scenes within a set of operations.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,13 +50,13 @@ pub struct ShadowKind {
     veiled: bool,
 }
 
-/// The pipelines of a kind: shadows, and occlusion; each is built when a scene first uses it.
+/// The pipelines of a kind, one for each part; each is built when a scene first uses it.
 #[derive(Debug)]
 pub struct ShadowPipelines {
     /// What they serve.
     pub kind: ShadowKind,
     /// The pipelines.
-    pub pipelines: [Option<ComputePipeline>; 2],
+    pub pipelines: [Option<ComputePipeline>; SHADOW_PARTS],
 }
 
 impl ShadowKind {
@@ -68,7 +71,7 @@ impl ShadowKind {
         alike(self) == alike(other) && self.ops.covers(&other.ops) && self.ops.is_near(&other.ops)
     }
 
-    /// Builds one of the pipelines: of shadows, or of occlusion.
+    /// Builds the pipeline of a part.
     ///
     /// # Errors
     /// A shader file is missing.
@@ -81,7 +84,12 @@ impl ShadowKind {
         options: Options,
     ) -> Result<ComputePipeline, ShaderError> {
         let Obstacles { meshes, copies } = self.obstacles;
-        let features = [(meshes, "MESH_RAYS"), (copies, SCENE_COPIES), (self.veiled, "VEILS")];
+        let features = [
+            (meshes, "MESH_RAYS"),
+            (copies, SCENE_COPIES),
+            (self.veiled, "VEILS"),
+            (part == WITH_RAYS, "AMBIENT_RAYS"),
+        ];
         let features: Vec<&str> =
             features.into_iter().filter_map(|(is_on, feature)| is_on.then_some(feature)).collect();
         let ops = self.ops.clone();
@@ -95,7 +103,7 @@ impl ShadowKind {
 /// Builds pipelines in a thread, one kind after the other.
 #[derive(Debug, Default)]
 pub struct ShadowOrders {
-    order: Option<(ShadowKind, [bool; 2])>,
+    order: Option<(ShadowKind, [bool; SHADOW_PARTS])>,
     finished: Option<Receiver<Result<ShadowPipelines, String>>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -107,7 +115,14 @@ impl ShadowOrders {
     }
 
     /// Has the used parts of a kind built, unless others are.
-    pub fn order(&mut self, gpu: &Gpu, layouts: &Layouts, kind: &ShadowKind, used: [bool; 2], options: Options) {
+    pub fn order(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &Layouts,
+        kind: &ShadowKind,
+        used: [bool; SHADOW_PARTS],
+        options: Options,
+    ) {
         if self.is_building() {
             return;
         }
@@ -136,7 +151,7 @@ impl ShadowOrders {
     }
 
     /// Whether a kind was ordered and could not be built: frames then build it themselves, and report why not.
-    pub fn has_failed(&self, kind: &ShadowKind, used: [bool; 2]) -> bool {
+    pub fn has_failed(&self, kind: &ShadowKind, used: [bool; SHADOW_PARTS]) -> bool {
         !self.is_building() && self.order.as_ref().is_some_and(|(of, parts)| of == kind && *parts == used)
     }
 
@@ -159,7 +174,7 @@ fn build_beside(
     gpu: &Gpu,
     layouts: &Layouts,
     kind: ShadowKind,
-    used: [bool; 2],
+    used: [bool; SHADOW_PARTS],
     options: Options,
 ) -> Result<ShadowPipelines, String> {
     if gpu.is_software() {
@@ -172,12 +187,12 @@ fn build_beside(
         true => kind.build(&gpu.device, layouts, [&own, &queried], part, options).map(Some),
         false => Ok(None),
     };
-    let [first, second] = [0, 1].map(|part| build(part).map_err(|error| error.to_string()));
-    Ok(ShadowPipelines { kind, pipelines: [first?, second?] })
+    let [lights, cones, rays] = [0, 1, 2].map(|part| build(part).map_err(|error| error.to_string()));
+    Ok(ShadowPipelines { kind, pipelines: [lights?, cones?, rays?] })
 }
 
 /// Dispatches the pipelines over nothing, on a device of their own.
-fn meet_elsewhere(gpu: &Gpu, kind: &ShadowKind, used: [bool; 2], options: Options) -> Result<(), String> {
+fn meet_elsewhere(gpu: &Gpu, kind: &ShadowKind, used: [bool; SHADOW_PARTS], options: Options) -> Result<(), String> {
     let prewarmer = Prewarmer::new(gpu, options).map_err(|error| error.to_string())?;
     let (gpu, layouts) = prewarmer.device();
     let device = &gpu.device;
@@ -233,8 +248,8 @@ mod tests {
         let mut orders = ShadowOrders::default();
         for (meshes, copies, by_tapes) in [(false, false, true), (true, true, false)] {
             let kind = ShadowKind::of(&flat, by_tapes, Obstacles { meshes, copies });
-            assert!(orders.collect().is_none() && !orders.has_failed(&kind, [true; 2]));
-            orders.order(&gpu, &layouts, &kind, [true; 2], Options::default());
+            assert!(orders.collect().is_none() && !orders.has_failed(&kind, [true; SHADOW_PARTS]));
+            orders.order(&gpu, &layouts, &kind, [true; SHADOW_PARTS], Options::default());
             assert!(orders.is_building());
             let built = loop {
                 if let Some(built) = orders.collect() {

@@ -65,6 +65,8 @@ pub struct Frame {
     pub(super) shadow_relaunches: u32,
     /// Pixels whose shadows were given up.
     pub(super) unfinished_shadows: u32,
+    /// Evaluations of fields for shadows and occlusion, if the pipelines count.
+    pub(super) shadow_evaluations: u64,
     /// Numbers of lights with and without shadows.
     pub(super) shadowed_lights: [usize; 2],
 }
@@ -107,6 +109,7 @@ impl Frame {
             instancers: flat.components.iter().map(|c| c.instanced.map(|of| of.instancer)).collect(),
             shadow_relaunches: 0,
             unfinished_shadows: 0,
+            shadow_evaluations: 0,
             shadowed_lights: [0, 0],
         }
     }

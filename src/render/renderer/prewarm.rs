@@ -10,8 +10,8 @@ use isolith_field::FlatScene;
 use isolith_geometry::Camera;
 
 impl Renderer {
-    /// Sets whether shadows and occlusion of frames are computed for every second pixel along each axis, and taken from
-    /// these between: for pictures of something that moves. Samples of a picture have them for all.
+    /// Sets whether shadows of frames are computed for every second pixel along each axis and occlusion for every fourth, and
+    /// taken from these between: for pictures of something that moves. Samples of a picture have them for all.
     pub fn set_sparse_light(&mut self, is_on: bool) {
         self.sparse_light = is_on;
     }
@@ -25,7 +25,7 @@ impl Renderer {
     /// Whether the pipelines of shadows are there, or frames are to wait for them.
     pub(super) fn shadows_are_ready(&mut self, flat: &FlatScene, work: &ShadowWork) -> bool {
         let (kind, used) = work.pipelines(flat, !flat.meshes.is_empty());
-        !self.late_shadows || self.passes.shadow.is_ready(&self.gpu, &kind, used, Self::options(&self.gpu))
+        !self.late_shadows || self.passes.shadow.is_ready(&self.gpu, &kind, used, self.pipelines.options())
     }
 
     /// Takes pipelines of shadows that have become ready. Returns whether pictures are to be drawn again.

@@ -15,7 +15,7 @@ use crate::passes::Passes;
 use crate::pipelines::shadow::ShadowKind;
 use crate::recipe::Pass;
 use crate::resources::hierarchy::{Obstacles, query_components};
-use crate::resources::shadows::{SceneQuery, ShadowSettings};
+use crate::resources::shadows::{SHADOW_PARTS, SceneQuery, ShadowSettings};
 use isolith_field::standpoint::Standpoints;
 use isolith_field::{Component, FlatScene, Warning};
 use isolith_geometry::Camera;
@@ -82,35 +82,32 @@ impl ShadowWork {
         settings.is_on().then(|| Self { settings, cost: QueryCost::of(flat, chosen), walk, left })
     }
 
-    /// The same with shares for one pixel in so many along each axis.
-    pub fn spaced(mut self, spacing: u32) -> Self {
-        self.settings.spacing = spacing;
+    /// The same for a picture of something that moves: not every pixel has shares.
+    pub fn sparse(mut self) -> Self {
+        self.settings = self.settings.sparse();
         self
     }
 
     /// What pipelines it needs, with those of samples; `meshes`: whether there are some.
-    pub fn pipelines(&self, flat: &FlatScene, meshes: bool) -> (ShadowKind, [bool; 2]) {
+    pub fn pipelines(&self, flat: &FlatScene, meshes: bool) -> (ShadowKind, [bool; SHADOW_PARTS]) {
         let obstacles = Obstacles { meshes, copies: !flat.instancers.is_empty() };
-        (ShadowKind::of(flat, self.cost.by_tapes, obstacles), parts_of_still(&self.settings))
+        (ShadowKind::of(flat, self.cost.by_tapes, obstacles), self.settings.parts_of_still())
     }
 
     /// Expected leaves per pixel.
     pub fn per_pixel(&self) -> f64 {
         let lights = f64::from(self.settings.lights);
         let (occlusion, around) = if self.settings.cones > 0 { (OCCLUSION_EVALUATIONS, 1.0) } else { (0.0, 0.0) };
-        let all = self.cost.leaves * (lights * LIGHT_EVALUATIONS + occlusion) + self.walk * (lights + around);
-        all / f64::from(self.settings.spacing.pow(2))
+        let of_lights = self.cost.leaves * lights * LIGHT_EVALUATIONS + self.walk * lights;
+        let of_cones = self.cost.leaves * occlusion + self.walk * around;
+        let [spacing, of_cone, _] = self.settings.spacings().map(|side| f64::from(side * side));
+        of_lights / spacing + of_cones / of_cone
     }
 
     /// Numbers of lights with and without shadows.
     pub fn lights(&self) -> [usize; 2] {
         [self.settings.lights as usize, self.left]
     }
-}
-
-/// Which entry points a picture and its samples use: samples follow rays to the environment with the pipeline of the lights.
-fn parts_of_still(settings: &ShadowSettings) -> [bool; 2] {
-    [settings.is_on(), settings.cones > 0]
 }
 
 /// A scene as a frame sees it.
@@ -143,7 +140,7 @@ pub fn upload(
     let SeenScene { flat, meshes, camera, size, standpoints } = seen;
     let has_meshes = meshes.iter().any(Option::is_some);
     let obstacles = Obstacles { meshes: has_meshes, copies: !flat.instancers.is_empty() };
-    let used = parts_of_still(&settings);
+    let used = settings.parts_of_still();
     passes.shadow.prepare(&gpu.device, ShadowKind::of(flat, cost.by_tapes, obstacles), used, options)?;
     let mut components = query_components(flat, camera.position, &standpoints.all);
     if cost.by_tapes {
@@ -159,11 +156,11 @@ pub fn upload(
     Ok(resources.shadows.upload(gpu, flat, &query, settings, size))
 }
 
-/// Whether the dispatch `at` belongs to the pass. If so, sets the number of unfinished pixels to 0.
+/// Whether the dispatch `at` belongs to the pass. If so, sets the numbers of unfinished pixels and of evaluations to 0.
 pub fn begin(gpu: &Gpu, resources: &mut FrameResources, frame: &Frame, at: usize) -> bool {
     let is_shadow = frame.plan.dispatches.get(at).is_some_and(|dispatch| dispatch.pass == Pass::Shadow);
     if is_shadow {
-        resources.shadows.unfinished.reset(&gpu.device, &gpu.queue, bytemuck::bytes_of(&0_u32));
+        resources.shadows.unfinished.reset(&gpu.device, &gpu.queue, bytemuck::bytes_of(&[0_u32; 2]));
     }
     is_shadow
 }
@@ -173,7 +170,9 @@ pub fn begin(gpu: &Gpu, resources: &mut FrameResources, frame: &Frame, at: usize
 /// # Errors
 /// The device fails.
 pub fn go_on(gpu: &Gpu, resources: &FrameResources, frame: &mut Frame, at: usize) -> Result<(), RenderError> {
-    let unfinished = read_words(gpu, resources.shadows.unfinished.buffer(), 1)?[0];
+    let counted = read_words(gpu, resources.shadows.unfinished.buffer(), 2)?;
+    let unfinished = counted[0];
+    frame.shadow_evaluations += u64::from(counted[1]);
     let is_first = frame.plan.dispatches[at].params.relaunch == 0;
     frame.shadow_relaunches = if is_first { 1 } else { frame.shadow_relaunches + 1 };
     if unfinished > 0 && frame.shadow_relaunches < MOST_RELAUNCHES {
@@ -187,6 +186,11 @@ pub fn go_on(gpu: &Gpu, resources: &FrameResources, frame: &mut Frame, at: usize
 }
 
 impl Frame {
+    /// Evaluations of fields for shadows and occlusion so far, if the pipelines count.
+    pub fn shadow_evaluations(&self) -> u64 {
+        self.shadow_evaluations
+    }
+
     /// Warnings about shadows that are missing or not complete, and about copies of meshes that are not drawn.
     pub(super) fn other_warnings(&self, left_out: usize) -> Vec<Warning> {
         let [used, left] = self.shadowed_lights;

@@ -37,10 +37,19 @@ pub struct ShadowSettings {
     pub occlusion_radius: f32,
     /// See the scene's `Shadowing`.
     pub occlusion_strength: f32,
-    /// Pixels from one with shares to the next, along each axis: 1, or 2 while something moves.
+    /// Pixels from one with shares of lights to the next, along each axis: 1, or more while something moves.
     pub spacing: u32,
+    /// The same for the cones of occlusion.
+    pub cone_spacing: u32,
 }
 
+/// Pixels from one with shares of lights to the next while something moves. Occlusion varies less: its cones, and lights if
+/// there are many, have twice as much.
+const SPARSE_SPACING: u32 = 2;
+/// Most lights with shadows that have it.
+const FEW_LIGHTS: u32 = 4;
+/// See [`ShadowSettings::parts`].
+pub const SHADOW_PARTS: usize = 3;
 /// Shares in a word.
 const BYTES: u64 = 4;
 /// Words of the state of an unfinished pixel, of its shadows and again of its occlusion; further ones in scenes with
@@ -67,13 +76,36 @@ impl ShadowSettings {
             occlusion_radius: shadowing.occlusion_radius as f32,
             occlusion_strength: shadowing.occlusion_strength as f32,
             spacing: 1,
+            cone_spacing: 1,
         }
     }
 
-    /// Whether cones or rays to lights or, in a sample, to the environment are followed; and whether the cones of
-    /// occlusion are.
-    pub fn parts(&self) -> [bool; 2] {
-        [self.lights > 0 || self.cones > 0 && self.sample > 0, self.cones > 0]
+    /// The same for a picture of something that moves: not every pixel has shares.
+    pub fn sparse(self) -> Self {
+        let spacing = if self.lights > FEW_LIGHTS { 2 * SPARSE_SPACING } else { SPARSE_SPACING };
+        Self { spacing, cone_spacing: 2 * SPARSE_SPACING, ..self }
+    }
+
+    /// Whether some pixels have no shares of their own.
+    pub fn is_sparse(&self) -> bool {
+        self.spacing > 1
+    }
+
+    /// Pixels from one with shares to the next, of each of [`Self::parts`].
+    pub fn spacings(&self) -> [u32; SHADOW_PARTS] {
+        [self.spacing, self.cone_spacing, self.spacing]
+    }
+
+    /// Which parts run: shadows of lights, the cones of occlusion, and, instead of the first in samples with occlusion,
+    /// shadows and rays to the environment.
+    pub fn parts(&self) -> [bool; SHADOW_PARTS] {
+        let has_rays = self.cones > 0 && self.sample > 0;
+        [self.lights > 0 && !has_rays, self.cones > 0, has_rays]
+    }
+
+    /// Those that a picture and its samples use.
+    pub fn parts_of_still(&self) -> [bool; SHADOW_PARTS] {
+        [self.lights > 0, self.cones > 0, self.cones > 0]
     }
 
     /// Whether there is anything to do.
@@ -118,7 +150,7 @@ pub struct ShadowBuffers {
     pub shares: SyncedBuffer,
     /// State of unfinished pixels.
     pub states: SyncedBuffer,
-    /// Their number.
+    /// Their number, and that of evaluations.
     pub unfinished: SyncedBuffer,
 }
 
@@ -190,7 +222,7 @@ impl ShadowBuffers {
     /// Uploads the number of the sample. Samples have shares for every pixel.
     pub fn set_sample(&mut self, gpu: &Gpu, sample: u32) {
         if self.used.is_on() {
-            (self.used.sample, self.used.spacing) = (sample, 1);
+            self.used = ShadowSettings { sample, spacing: 1, cone_spacing: 1, ..self.used };
             self.settings.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&self.used));
         }
     }
@@ -220,6 +252,7 @@ fn hierarchy_with_copies(flat: &FlatScene) -> Hierarchy {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::rect::TILE;
 
     #[test]
     fn lights_whose_shares_do_not_fit_cast_no_shadows() {
@@ -230,5 +263,19 @@ mod tests {
         assert_eq!((all.lights, all.cones, all.stride), (3, OCCLUSION_CONES, 3));
         let few = ShadowSettings::new(&flat, 30, 100, 1600);
         assert_eq!((few.lights, few.stride), (8, 4));
+    }
+
+    #[test]
+    fn only_what_moves_has_sparse_light() {
+        let mut flat = FlatScene::default();
+        flat.environment.shadowing = isolith_scene::Shadowing::default();
+        let of = |lights| ShadowSettings::new(&flat, lights, 100, 1 << 20);
+        assert!(!of(1).is_sparse() && of(1).spacings() == [1; SHADOW_PARTS]);
+        assert!(of(1).sparse().is_sparse() && of(1).sparse().spacings() == [2, 4, 2]);
+        assert_eq!(of(16).sparse().spacings(), [4; SHADOW_PARTS]);
+        let sample = ShadowSettings { sample: 3, ..of(1) };
+        assert_eq!((of(1).parts(), sample.parts()), ([true, true, false], [false, true, true]));
+        // Pixels with shares are found by masks, and parts begin at tiles.
+        assert!(of(16).sparse().spacings().iter().all(|side| side.is_power_of_two() && TILE.is_multiple_of(*side)));
     }
 }

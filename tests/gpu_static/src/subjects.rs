@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use isolith::field::flatten;
 use isolith::gallery;
 use isolith::render::{EvalStrategy, EvaluatorUse, evaluators_of};
-use isolith::wgsl::{Evaluator, FILES, OpSet, Options, SkipMode, assemble, assemble_with};
+use isolith::wgsl::{Evaluator, FILES, OpSet, Options, SkipMode, assemble_with};
 use naga::ShaderStage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -158,7 +158,9 @@ pub fn subjects() -> Result<Subjects, Error> {
             FIELD_PASSES.map(|pass| (pass, &FIELD_OFFSETS)).into_iter().chain(of_shadows)
         {
             let failed = |error| Error::Refused { what: format!("{scene}, {pass}"), reason: format!("{error}") };
-            let text = assemble(&format!("{pass}.wgsl"), &evaluator, OPTIONS).map_err(failed)?;
+            // Shadows with the rays of samples need the most.
+            let features: &[&str] = if entry_point == "shadow" { &["AMBIENT_RAYS"] } else { &[] };
+            let text = assemble_with(&format!("{pass}.wgsl"), &evaluator, OPTIONS, features).map_err(failed)?;
             let index = *known.entry((text, entry_point)).or_insert_with_key(|(text, _)| {
                 sources.push((text.clone(), entry_point, offsets.as_slice()));
                 sources.len() - 1
@@ -229,8 +231,7 @@ fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
         // With all that a scene may need of the pass `shade`.
         let options = Options { shadowed: true, ..OPTIONS };
         let nothing = Evaluator::Interpreter(OpSet::none());
-        let text =
-            assemble_with(&format!("{pass}.wgsl"), &nothing, options, &["TEXTURES", "FULL_SHARES"]).map_err(failed)?;
+        let text = assemble_with(&format!("{pass}.wgsl"), &nothing, options, &["TEXTURES"]).map_err(failed)?;
         let shader = Shader::new(pass, &text)?;
         for entry_point in shader.entry_points(ShaderStage::Compute) {
             all.push((pass.to_owned(), compute(pass, &text, &entry_point, &FIELD_OFFSETS)?));
