@@ -206,7 +206,8 @@ fn the_nearest_node_above_a_part_decides_and_parts_of_a_blend_cannot() {
 #[test]
 fn settings_are_parameters_with_limits_in_files_and_can_be_undone() {
     let mut scene = Scene::new();
-    let march = MarchSettings { order: 2, near: 0.5, far: 40.0, precision: 0.25, steps: 99 };
+    let march =
+        MarchSettings { order: 2, near: 0.5, far: 40.0, precision: 0.25, steps: 99, ..MarchSettings::default() };
     let id = scene.insert(None, 0, object(&scene, Shape::Sphere { radius: 1.0 }).marched(march)).expect("room");
     let text = file::to_json(&scene).expect("a sound scene");
     assert_eq!(file::parse(text.as_bytes(), "scene.json".as_ref()).expect("readable"), scene);

@@ -277,7 +277,9 @@ fn dispatch_params() -> Layout {
             near,
             far,
             footprint,
-            copy_steps
+            copy_steps,
+            spacing,
+            padding_1
         }
     )
 }

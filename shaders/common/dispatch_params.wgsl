@@ -31,4 +31,7 @@ struct DispatchParams {
     footprint: f32,
     // Steps that a ray may take through one copy.
     copy_steps: u32,
+    // Pixels from one ray to the next, where not all pixels have rays: see `resolution.wgsl`.
+    spacing: u32,
+    padding_1: u32,
 }

@@ -57,7 +57,11 @@ fn copy_around_next(walk: ptr<function, CopyWalk>, found: ptr<function, Copy>) -
         } else {
             walk_pass_cell(walk);
         }
-        let copy = copy_at((*walk).at, COPY_OF_ANY);
+        let at_rest = copy_at_rest((*walk).at, COPY_OF_ANY);
+        if at_rest.kind == COPY_ABSENT || distance(at_rest.place, (*walk).origin) > instancer.reach_at_rest + radius {
+            continue;
+        }
+        let copy = copy_moved((*walk).at, at_rest);
         if copy.kind != COPY_ABSENT {
             let sphere = copy_sphere(copy);
             if distance(sphere.xyz, (*walk).origin) <= sphere.w + radius {

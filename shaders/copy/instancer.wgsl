@@ -89,7 +89,8 @@ struct Instancer {
     cell_visits: u32,
     // How far the content of a copy may reach from its place along each axis.
     reach: vec3f,
-    padding_1: u32,
+    // How far it may reach from where the copy stands at rest, with its looseness and its offset.
+    reach_at_rest: f32,
     // Sums of the shares of the types, four per row.
     shares: array<vec4f, 8>,
     // Bounding spheres of the types.

@@ -49,12 +49,28 @@ fn copy_kind(cell: vec3i, base: vec3f, seed: u32, probability: f32, masks: u32, 
     return kind;
 }
 
-// A copy that exists, moved and turned from its base.
-fn copy_placed(at: vec3i, cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> Copy {
+// A copy before its size, its rotation and its motion are known.
+struct CopyAtRest {
+    cell: vec3i,
+    kind: u32,
+    // Where it stands when it does not move.
+    place: vec3f,
+    turned: vec4f,
+}
+
+// A copy that exists, off its base.
+fn copy_placed(cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> CopyAtRest {
     let seed = instancer.seed;
     let loose = (copy_randoms(seed, cell, CHANNEL_PLACE) - 0.5) * jitter;
     let offset = mix(instancer.offset_min, instancer.offset_max, copy_randoms(seed, cell, CHANNEL_OFFSET));
-    let place = base + loose + quaternion_rotated(turned, offset);
+    return CopyAtRest(cell, kind, base + loose + quaternion_rotated(turned, offset), turned);
+}
+
+// The copy in its size, turned and moved. One whose size is none is absent.
+fn copy_moved(at: vec3i, at_rest: CopyAtRest) -> Copy {
+    let seed = instancer.seed;
+    let cell = at_rest.cell;
+    let place = at_rest.place;
     let angles = mix(instancer.rotation_min, instancer.rotation_max, copy_randoms(seed, cell, CHANNEL_ROTATION));
     let sines = sin(0.5 * angles);
     let cosines = cos(0.5 * angles);
@@ -69,10 +85,10 @@ fn copy_placed(at: vec3i, cell: vec3i, kind: u32, base: vec3f, turned: vec4f, ji
     let is_there = min(scale.x, min(scale.y, scale.z)) >= COPY_LEAST_SCALE;
     return Copy(
         cell,
-        select(COPY_ABSENT, kind, is_there),
+        select(COPY_ABSENT, at_rest.kind, is_there),
         place + motion.translation,
         motion.hue,
-        quaternion_product(motion.rotation, quaternion_product(turned, own)),
+        quaternion_product(motion.rotation, quaternion_product(at_rest.turned, own)),
         scale,
         motion.emission,
         at,
@@ -98,6 +114,15 @@ fn copy_cell_place(relative: vec3i) -> vec3f {
 // The copy of a cell relative to the anchor, or at the place `at.x` of the list, if it is of this
 // type; else one of kind COPY_ABSENT.
 fn copy_at(at: vec3i, kind: u32) -> Copy {
+    let at_rest = copy_at_rest(at, kind);
+    if at_rest.kind == COPY_ABSENT {
+        return copy_none();
+    }
+    return copy_moved(at, at_rest);
+}
+
+// The same before it moves.
+fn copy_at_rest(at: vec3i, kind: u32) -> CopyAtRest {
     var cell = at + instancer.anchor;
     var base = copy_cell_place(at);
     var turned = QUATERNION_NONE;
@@ -120,9 +145,9 @@ fn copy_at(at: vec3i, kind: u32) -> Copy {
         own = copy_kind(cell, base, seed, probability, masks, types);
     }
     if own == COPY_ABSENT || (own != kind && kind != COPY_OF_ANY) {
-        return copy_none();
+        return CopyAtRest(cell, COPY_ABSENT, base, turned);
     }
-    return copy_placed(at, cell, own, base, turned, jitter);
+    return copy_placed(cell, own, base, turned, jitter);
 }
 
 fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {

@@ -117,6 +117,8 @@ fn copy_walk_is_over(walk: ptr<function, CopyWalk>) -> bool {
 fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr<function, CopyVisit>) -> bool {
     let is_list = instancer_count(instancer.tree_count, (*walk).direction.x) > 0u;
     let masks = instancer_count(instancer.mask_count, (*walk).direction.x);
+    // Without motions a look before them saves less than it costs.
+    let still = instancer_count(instancer.dynamic_count, (*walk).direction.x) == 0u;
     loop {
         if copy_walk_is_over(walk) {
             return false;
@@ -145,7 +147,11 @@ fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr
         if !looks {
             continue;
         }
-        let copy = copy_at((*walk).at, kind);
+        let at_rest = copy_at_rest((*walk).at, kind);
+        if at_rest.kind == COPY_ABSENT || !(walk_may_meet(walk, at_rest.place) || still) {
+            continue;
+        }
+        let copy = copy_moved((*walk).at, at_rest);
         if copy.kind != COPY_ABSENT && walk_meets(walk, copy, far, found) {
             return true;
         }
@@ -204,6 +210,18 @@ fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
     let beside = abs(away.x * level.y - away.z * level.x);
     let near = (length(instancer.reach.xz) + wide) * length(level);
     return dot(miss, miss) <= (most + wide) * (most + wide) && beside <= near;
+}
+
+// Whether the cone may meet the copy that stands here at rest.
+fn walk_may_meet(walk: ptr<function, CopyWalk>, place: vec3f) -> bool {
+    let away = place - (*walk).origin;
+    let direction = (*walk).direction;
+    let square = dot(direction, direction);
+    let nearest = dot(away, direction) / square;
+    let miss = away - direction * nearest;
+    let reach = instancer.reach_at_rest;
+    let wide = reach + (*walk).spread * max(nearest + reach * inverseSqrt(square), 0.0) + 1e-6 * abs(nearest) * sqrt(square);
+    return dot(miss, miss) <= wide * wide;
 }
 
 // Whether the cone meets the bounding sphere of a copy before `far`.

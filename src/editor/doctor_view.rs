@@ -341,6 +341,7 @@ fn pass_meaning(name: &str) -> &'static str {
     match name {
         "mesh" => "Draws triangle meshes",
         "hiz" => "Finds what meshes hide",
+        "resolution" => "Chooses rays of parts with a resolution of their own",
         "cone" => "Skips empty space around each part",
         "trace" => "Marches rays to the surfaces of fields",
         "surface" => "Normals and materials of what is seen",

@@ -13,6 +13,8 @@ macro_rules! recipe {
             Hiz: hiz = HizPass, "hiz.wgsl", over Meshes;
             /// Finds the subtiles that a component touches.
             Cone: cone = ConePass, "cone.wgsl", over Parts;
+            /// Which rays of a component with a resolution of its own are marched, and what the pixels between show.
+            Resolution: resolution = ResolutionPass, "resolution.wgsl", over Thinned;
             /// Marches one component within these subtiles.
             Trace: trace = TracePass, "trace.wgsl", over Rounds;
             /// Normals and materials of the pixels that remain visible after all components are traced.
@@ -43,6 +45,8 @@ pub enum Extent {
     Meshes,
     /// Each visible component, front to back, in parts that are short enough for one dispatch.
     Parts,
+    /// Those of them that have rays for some pixels only, before the first ray and before the last ones.
+    Thinned,
     /// The same parts, each relaunched until no ray can be left.
     Rounds,
     /// The parts again, after all components have been traced.
@@ -61,7 +65,7 @@ pub enum Extent {
 impl Extent {
     /// Whether the pass runs over parts, each of which goes through this pass and the next pass of this kind in turn.
     pub fn is_of_parts(self) -> bool {
-        matches!(self, Self::Parts | Self::Rounds)
+        matches!(self, Self::Parts | Self::Thinned | Self::Rounds)
     }
 }
 

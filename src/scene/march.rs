@@ -3,8 +3,54 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{CUT_OFF, MARCH_ORDER, MARCH_STEPS, PRECISION};
-use super::params::param_struct;
+use super::limits::{CUT_OFF, MARCH_ORDER, MARCH_STEPS, NO_LIMITS, PRECISION};
+use super::params::{choices, param_struct};
+
+/// How many pixels of a part are traced; those between take the distances of their neighbors where these show the same
+/// surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MarchResolution {
+    /// All.
+    #[default]
+    Full,
+    /// Every second one along each axis.
+    Half,
+    /// Every fourth one along each axis.
+    Quarter,
+}
+
+impl MarchResolution {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Full, Self::Half, Self::Quarter];
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Full => "Full",
+            Self::Half => "1/2",
+            Self::Quarter => "1/4",
+        }
+    }
+
+    fn help(self) -> &'static str {
+        match self {
+            Self::Full => "A ray for each pixel.",
+            Self::Half => "A ray for every second pixel along each axis, and for those at edges.",
+            Self::Quarter => "A ray for every fourth pixel along each axis, and for those at edges.",
+        }
+    }
+
+    /// Pixels from one ray to the next.
+    pub fn spacing(self) -> u32 {
+        match self {
+            Self::Full => 1,
+            Self::Half => 2,
+            Self::Quarter => 4,
+        }
+    }
+}
+
+choices!(MarchResolution);
 
 param_struct! {
     /// How the parts below a node are marched by the rays of the eye. Their shadows do not change.
@@ -21,6 +67,9 @@ param_struct! {
         precision: f64 = 1.0, PRECISION;
         /// Most steps of a ray through it, or through one of its copies; rays that need more pass it. 0 for no limit.
         steps: u32 = 0, MARCH_STEPS.labeled("Most steps");
+        /// How many of its pixels get rays of their own. Those between take their distances from their neighbors where
+        /// these show one smooth surface; what is smaller than the gaps may be missed. Parts that rays may pass ignore it.
+        resolution: MarchResolution = MarchResolution::Full, NO_LIMITS;
     }
 }
 

@@ -86,7 +86,7 @@ pub use instancer::{
 pub use instancer_presets::InstancerPreset;
 pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
-pub use march::MarchSettings;
+pub use march::{MarchResolution, MarchSettings};
 pub use material::{Material, MaterialId, ReflectionModel};
 pub use model_fields::ModelRequest;
 pub use model_file::ModelFile;

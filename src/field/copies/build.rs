@@ -69,6 +69,7 @@ pub fn flat_instancer(
         dynamics,
         spheres: types.iter().map(|one| (one.bounds.center(), one.bounds.half().length())).collect(),
         reach: content + offset + envelope.displacement,
+        reach_at_rest: reach_at_rest(types, &variation, envelope),
     };
     match &flat.placement {
         Placement::Lattice(lattice) if !is_listed => {
@@ -134,6 +135,13 @@ fn content_reach(types: &[CopyType], scale: DVec3, tilt: f64) -> DVec3 {
     let all = beside.hypot(above);
     let [beside, above] = [beside + above * sine, above + beside * sine].map(|reach| reach.min(all));
     DVec3::new(beside, above, beside)
+}
+
+/// How far the bounding spheres of copies reach from where these stand at rest, turned and moved in any way.
+fn reach_at_rest(types: &[CopyType], variation: &Variation, envelope: Envelope) -> f64 {
+    let sizes = [variation.scale_min, variation.scale_max].map(|ends| DVec3::from_array(ends).abs().max_element());
+    let of = |one: &CopyType| one.bounds.center().length() + one.bounds.half().length();
+    types.iter().map(of).fold(0.0, f64::max) * sizes[0].max(sizes[1]) * envelope.scale + envelope.displacement
 }
 
 /// Whether its copies stand in a list, not in cells.

@@ -81,7 +81,7 @@ pub struct GpuInstancer {
     /// Visits that a cell counts as in queries of the scene.
     pub cell_visits: u32,
     reach: [f32; 3],
-    padding_1: u32,
+    reach_at_rest: f32,
     shares: [f32; MAX_TYPES],
     spheres: [[f32; 4]; MAX_TYPES],
     palette: [u32; MAX_PALETTE],
@@ -151,6 +151,8 @@ pub fn gpu_instancer(instancer: &FlatInstancer, eye: DVec3, first_row: u32) -> G
         first_row,
         bounds_high: bound(bounds.max),
         reach: vector(instancer.reach),
+        // Slightly more, for the rounding of places.
+        reach_at_rest: (1.001 * instancer.reach_at_rest) as f32,
         ..GpuInstancer::zeroed()
     };
     fill_lists(&mut gpu, instancer, place);

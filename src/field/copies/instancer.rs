@@ -42,6 +42,8 @@ pub struct FlatInstancer {
     pub spheres: Vec<(DVec3, f64)>,
     /// How far the content of a copy may reach from its place along each axis, at any time.
     pub reach: DVec3,
+    /// How far it may reach from where the copy stands at rest, with its looseness and its offset.
+    pub reach_at_rest: f64,
 }
 
 /// Where copies stand.

@@ -37,14 +37,29 @@ impl Copy {
     }
 }
 
+/// A copy before its size, its rotation and its motion are known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CopyAtRest {
+    cell: [i32; 3],
+    kind: u32,
+    /// Where it stands when it does not move.
+    pub place: DVec3,
+    turned: DQuat,
+}
+
 /// The copy of a cell; `None` if there is none.
 pub fn copy_of_cell(instancer: &FlatInstancer, cell: [i32; 3]) -> Option<Copy> {
+    copy_moved(instancer, copy_at_rest(instancer, cell)?)
+}
+
+/// Where the copy of a cell stands; `None` if there is none.
+pub(super) fn copy_at_rest(instancer: &FlatInstancer, cell: [i32; 3]) -> Option<CopyAtRest> {
     let Placement::Lattice(lattice) = &instancer.placement else { return None };
     let base = lattice.place(cell);
     let kind = copy_kind(instancer, cell, base, 1.0)?;
     // The looseness is a share of the cell, along the axes that have several.
     let cell_size = DVec3::from_array([0, 1, 2].map(|i| if lattice.is_long(i) { lattice.spacing[i] } else { 0.0 }));
-    copy_placed(instancer, cell, kind, (base, DQuat::IDENTITY), cell_size)
+    Some(copy_placed(instancer, cell, kind, (base, DQuat::IDENTITY), cell_size))
 }
 
 /// The copy at a place of the list; `None` if there is none.
@@ -52,7 +67,8 @@ pub fn copy_of_place(instancer: &FlatInstancer, place: usize) -> Option<Copy> {
     let Placement::List(list) = &instancer.placement else { return None };
     let place = list.places[place];
     let kind = copy_kind(instancer, place.cell, place.position, place.up)?;
-    copy_placed(instancer, place.cell, kind, (place.position, place.rotation), DVec3::ZERO)
+    let placed = (place.position, place.rotation);
+    copy_moved(instancer, copy_placed(instancer, place.cell, kind, placed, DVec3::ZERO))
 }
 
 /// The type of a copy at a place with this cosine of the slope of the ground; `None` if there is no copy.
@@ -64,22 +80,31 @@ fn copy_kind(instancer: &FlatInstancer, cell: [i32; 3], base: DVec3, up: f64) ->
     instancer.shares.iter().position(|sum| kind < *sum).map(|kind| kind as u32)
 }
 
-/// A copy that exists, of type `kind`, moved and turned from its base.
+/// A value between these ends, by a random number for each axis.
+fn between(least: [f64; 3], most: [f64; 3], at: DVec3) -> DVec3 {
+    DVec3::from_array(least) + (DVec3::from_array(most) - DVec3::from_array(least)) * at
+}
+
+/// A copy that exists, of type `kind`, off its base.
 fn copy_placed(
     instancer: &FlatInstancer,
     cell: [i32; 3],
     kind: u32,
     (base, turned): (DVec3, DQuat),
     cell_size: DVec3,
-) -> Option<Copy> {
+) -> CopyAtRest {
     let variation = &instancer.variation;
     let randoms = |channel: Channel| DVec3::from_array(copy_randoms(instancer.seed, cell, channel as u32));
-    let between = |least: [f64; 3], most: [f64; 3], at: DVec3| {
-        DVec3::from_array(least) + (DVec3::from_array(most) - DVec3::from_array(least)) * at
-    };
     let jitter = (randoms(Channel::Place) - 0.5) * variation.looseness * cell_size;
     let offset = between(variation.offset_min, variation.offset_max, randoms(Channel::Offset));
-    let place = base + jitter + turned * offset;
+    CopyAtRest { cell, kind, place: base + jitter + turned * offset, turned }
+}
+
+/// The copy in its size, turned and moved; `None` if its size is none.
+pub(super) fn copy_moved(instancer: &FlatInstancer, at_rest: CopyAtRest) -> Option<Copy> {
+    let CopyAtRest { cell, kind, place, turned } = at_rest;
+    let variation = &instancer.variation;
+    let randoms = |channel: Channel| DVec3::from_array(copy_randoms(instancer.seed, cell, channel as u32));
     let angles = between(variation.rotation_min, variation.rotation_max, randoms(Channel::Rotation));
     let [x, y, z] = angles.to_array().map(f64::to_radians);
     let own = DQuat::from_euler(EulerRot::YXZ, y, x, z);

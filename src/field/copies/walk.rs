@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::blocks::{BlockWalk, block_is_empty};
 use super::instancer::{FlatInstancer, FlatLattice, PlaceList, Placement};
-use super::variation::{Copy, copy_of_cell, copy_of_place};
+use super::variation::{Copy, copy_at_rest, copy_moved, copy_of_place};
 use crate::ray_limits::RayLimits;
 use isolith_geometry::{Aabb, Ray};
 
@@ -68,6 +68,8 @@ pub struct WalkCounts {
     pub cells: u64,
     /// Copies that stand there.
     pub copies: u64,
+    /// Those of them whose sizes, rotations and motions were computed.
+    pub moved: u64,
     /// Copies whose bounding spheres the cone met.
     pub met: u64,
 }
@@ -150,8 +152,14 @@ impl CopyWalk<'_> {
                 for y in ranges[1][0]..=ranges[1][1] {
                     for x in ranges[0][0]..=ranges[0][1] {
                         self.counts.cells += 1;
-                        let Some(copy) = copy_of_cell(instancer, [x, y, z]) else { continue };
-                        self.look(copy, visit)?;
+                        let Some(at_rest) = copy_at_rest(instancer, [x, y, z]) else { continue };
+                        self.counts.copies += 1;
+                        if !self.skips || self.may_meet(at_rest.place) {
+                            self.counts.moved += 1;
+                            if let Some(copy) = copy_moved(instancer, at_rest) {
+                                self.look(copy, visit)?;
+                            }
+                        }
                     }
                 }
             }
@@ -186,13 +194,22 @@ impl CopyWalk<'_> {
         block_is_empty(self.instancer, corner(0) - off, corner(1) + off)
     }
 
+    /// Whether the cone may meet the copy that stands here at rest.
+    fn may_meet(&self, place: DVec3) -> bool {
+        let CopyCone { axis: Ray { origin, direction }, spread, .. } = self.cone;
+        let (away, speed) = (place - origin, direction.length());
+        let nearest = away.dot(direction) / (speed * speed);
+        let reach = self.instancer.reach_at_rest;
+        let wide = reach + spread * (nearest + reach / speed).max(0.0);
+        (away - direction * nearest).length_squared() <= wide * wide
+    }
+
     /// Visits a copy if the cone meets it.
     fn look(
         &mut self,
         copy: Copy,
         visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        self.counts.copies += 1;
         let Some(met) = meeting(self.instancer, copy, &self.cone) else { return ControlFlow::Continue(()) };
         self.counts.met += 1;
         visit(&met, &mut self.cone.limits)
@@ -219,6 +236,8 @@ impl CopyWalk<'_> {
                 };
                 open.extend([far, near]);
             } else if let Some(copy) = copy_of_place(self.instancer, node.link as usize) {
+                self.counts.copies += 1;
+                self.counts.moved += 1;
                 self.look(copy, visit)?;
             }
         }

@@ -17,6 +17,7 @@ use crate::renderer::evaluation::EvaluationCost;
 use crate::resources::uniforms::DispatchParams;
 use isolith_field::{Component, FlatScene};
 use isolith_geometry::SampleView;
+use isolith_scene::MarchResolution;
 
 /// Subtiles along a side of a tile: the areas that cones are narrowed down to.
 pub const SUBTILES: u32 = 2;
@@ -79,6 +80,9 @@ pub struct FramePlan {
 const CONE_EVALUATIONS: f64 = 0.2;
 const TRACE_EVALUATIONS: f64 = 4.0;
 const SURFACE_EVALUATIONS: f64 = 3.0;
+/// What a pixel costs that takes its depth from its neighbors, and the share of those between rays that get rays as well.
+const RESOLUTION_EVALUATIONS: f64 = 0.5;
+const RESOLUTION_EDGES: f64 = 0.3;
 
 /// Capacity of a device for one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,13 +156,14 @@ pub fn plan(
 ) -> Result<FramePlan, TooMuch> {
     let PlannedView { view, size, .. } = shown;
     let whole = Rect { origin: [0, 0], end: size };
-    let projection = ScreenProjection::new(view, size);
+    let (projection, spacings) = (ScreenProjection::new(view, size), spacings(flat));
     let seen: Vec<(usize, Rect, Marching)> = traced(flat, shown)
         .into_iter()
         .filter_map(|index| {
             let component = &flat.components[index];
             let rect = Rect::around(component, &projection, size)?;
-            Some((index, rect, Marching::of(flat, component, shown, evaluations[index], cost_model)))
+            let marching = Marching::of(flat, component, shown, evaluations[index], cost_model);
+            Some((index, rect, marching.spaced(spacings.get(index).copied().unwrap_or(1))))
         })
         .collect();
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
@@ -188,7 +193,7 @@ pub fn plan(
             Extent::Picture => plan.push(stages[0], whole.params(0), Cost::default()),
             Extent::Meshes if flat.meshes.is_empty() => {}
             Extent::Meshes => plan.push(stages[0], whole.params(0), Cost::new(false, whole.pixels() * 0.05)),
-            Extent::Parts | Extent::Rounds | Extent::Hits => {
+            Extent::Parts | Extent::Thinned | Extent::Rounds | Extent::Hits => {
                 parts.iter().for_each(|part| stages.iter().for_each(|pass| plan.part(*pass, part)));
             }
             Extent::Lit if !tiled => {}
@@ -263,10 +268,17 @@ impl Marching {
         Self { evaluation, relaunches, per_pixel, most, params }
     }
 
+    /// The same with a ray for each `spacing` pixels along each axis.
+    fn spaced(self, spacing: u32) -> Self {
+        Self { params: DispatchParams { spacing, ..self.params }, ..self }
+    }
+
     /// Number of dispatches of a component whose image lies within `rect`: for each part its cones, relaunches and
-    /// surface.
+    /// surface. With fewer rays than pixels it has two rounds of relaunches, each after a pass that chooses rays.
     fn dispatches(&self, rect: &Rect) -> usize {
-        rect.parts(self.per_pixel, self.most) * (self.relaunches as usize + 2)
+        let rounds = self.relaunches as usize;
+        let rounds = if self.params.spacing > 1 { 2 * (rounds + 1) } else { rounds };
+        rect.parts(self.per_pixel, self.most) * (rounds + 2)
     }
 }
 
@@ -335,19 +347,34 @@ impl FramePlan {
         // The unfinished rays follow their count in the buffer; successive lists reuse the same place. Subtiles with
         // hits follow all other subtiles.
         let params = DispatchParams { rays: self.lists, hits: self.subtiles, ..part.params };
+        if pass.extent() == Extent::Thinned {
+            // With the rays that it chooses.
+            return;
+        }
         if pass.extent() != Extent::Rounds {
             let evaluations = if pass.extent() == Extent::Hits { SURFACE_EVALUATIONS } else { CONE_EVALUATIONS };
             return self.push(pass, params, cost(evaluations));
         }
+        // Most rays end long before the last relaunch.
+        let later = Cost { dispatches: 0.0, ..cost(0.1) };
+        let is_last = |relaunch: u32| u32::from(relaunch + 1 == relaunches);
+        if params.spacing > 1 {
+            let coarse = f64::from(params.spacing).powi(-2);
+            for (round, share) in [(0, coarse), (1, RESOLUTION_EDGES)] {
+                let chooses = DispatchParams { relaunch: round, ..params };
+                self.push(Pass::Resolution, chooses, cost(RESOLUTION_EVALUATIONS));
+                for relaunch in 0..relaunches {
+                    // The rays of the first round that are left go on in the second one.
+                    let last_relaunch = round * is_last(relaunch);
+                    let params = DispatchParams { relaunch: relaunch + 1, last_relaunch, compacted: 1, ..params };
+                    self.push(pass, params, if relaunch == 0 { cost(TRACE_EVALUATIONS * share) } else { later });
+                }
+            }
+            return;
+        }
         for relaunch in 0..relaunches {
-            let params = DispatchParams {
-                relaunch,
-                last_relaunch: u32::from(relaunch + 1 == relaunches),
-                compacted: u32::from(relaunch > 0),
-                ..params
-            };
-            // Most rays end long before the last relaunch.
-            let later = Cost { dispatches: 0.0, ..cost(0.1) };
+            let (last_relaunch, compacted) = (is_last(relaunch), u32::from(relaunch > 0));
+            let params = DispatchParams { relaunch, last_relaunch, compacted, ..params };
             self.push(pass, params, if relaunch == 0 { cost(TRACE_EVALUATIONS) } else { later });
         }
     }
@@ -363,6 +390,18 @@ fn traced(flat: &FlatScene, PlannedView { view, traced, .. }: PlannedView<'_>) -
             passes.flat_map(|pass| pass.components).collect()
         }
     }
+}
+
+/// Pixels from one ray to the next, of each component; empty if all pixels have rays. Whether a ray passes a surface tells
+/// nothing about its neighbors, so what rays may pass has all of them.
+fn spacings(flat: &FlatScene) -> Vec<u32> {
+    if flat.components.iter().all(|component| component.march.resolution == MarchResolution::Full) {
+        return Vec::new();
+    }
+    let veiled = flat.veiled();
+    let is_veiled = |at: usize| veiled.get(at) == Some(&true);
+    let of = |(at, one): (usize, &Component)| if is_veiled(at) { 1 } else { one.march.resolution.spacing() };
+    flat.components.iter().enumerate().map(of).collect()
 }
 
 /// The settings of a component for its dispatches, and the most steps of a ray, without limits of its own `max_steps`.

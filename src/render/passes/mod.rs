@@ -12,6 +12,7 @@ mod mesh_instance;
 mod mesh_textures;
 pub mod overlay;
 pub mod overlay_settings;
+pub mod resolution;
 pub mod shade;
 pub mod shade_features;
 pub mod shadow;
@@ -30,6 +31,7 @@ use isolith_wgsl::ShaderError;
 use lights::LightsPass;
 use mesh::MeshPass;
 use overlay::OverlayPass;
+use resolution::ResolutionPass;
 use shade::ShadePass;
 use shadow::ShadowPass;
 

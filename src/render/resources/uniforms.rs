@@ -244,4 +244,8 @@ pub struct DispatchParams {
     pub footprint: f32,
     /// Limit of the steps of a ray through one copy.
     pub copy_steps: u32,
+    /// Pixels from one ray to the next.
+    pub spacing: u32,
+    /// Padding.
+    pub padding_1: u32,
 }

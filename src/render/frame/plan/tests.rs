@@ -117,3 +117,39 @@ fn only_pictures_with_shadows_have_dispatches_for_them_two_for_each_part() {
         assert_eq!((pair[0].relaunch, pair[1].relaunch), (0, 1));
     }
 }
+
+#[test]
+fn parts_with_fewer_rays_choose_them_twice() {
+    let mut flat = isolith_field::flatten(&isolith_gallery::random(32, 1), 0.0).expect("within the limits");
+    flat.components[1].march.resolution = MarchResolution::Quarter;
+    let camera = flat.default_camera(&[], 1.0);
+    let slow = EvaluationCost { straight: false, iterations: MAX_ITERATIONS / 1_000, leaves: 8.0 };
+    let evaluations = vec![slow; flat.components.len()];
+    let planned = |room| plan(&flat, shown(&camera.into(), [64, 64]), &evaluations, LIGHT, &CostModel::new(true), room);
+    let whole = planned(Room::UNLIMITED).expect("room for all");
+    let room = |dispatches| Room { dispatches, ..Room::UNLIMITED };
+    assert!(planned(room(whole.dispatches.len())).is_ok() && planned(room(whole.dispatches.len() - 1)).is_err());
+    let marches: Vec<&Dispatch> = whole.dispatches.iter().filter(|one| one.pass != Pass::Surface).collect();
+    let (mut few, mut all) = (0, 0);
+    for of_list in marches.chunk_by(|a, b| a.params.list == b.params.list && a.params.component == b.params.component) {
+        let [cone, rest @ ..] = of_list else { continue };
+        if cone.pass != Pass::Cone {
+            continue;
+        }
+        let chosen: Vec<u32> =
+            rest.iter().filter(|one| one.pass == Pass::Resolution).map(|one| one.params.relaunch).collect();
+        let last: Vec<usize> = (0..rest.len()).filter(|at| rest[*at].params.last_relaunch == 1).collect();
+        assert_eq!(last, [rest.len() - 1]);
+        if cone.params.component == 1 {
+            assert_eq!(chosen, [0, 1]);
+            let (first, second) = rest.split_at(rest.len() / 2);
+            assert!(first.len() == second.len() && first[0].pass == second[0].pass && first.len() > 2);
+            assert!(first[1..].iter().chain(&second[1..]).all(|one| one.params.compacted == 1));
+            few += 1;
+        } else {
+            assert!(chosen.is_empty() && rest[0].params.compacted == 0);
+            all += 1;
+        }
+    }
+    assert!(few > 0 && all > 0, "{few}, {all}");
+}
