@@ -137,10 +137,10 @@ fn the_view_for_debugging_chosen_in_the_menu_is_what_the_picture_is_asked_for() 
     let mut harness = open(scene.clone());
     assert_eq!(harness.state().view().view_mode, ViewMode::Shaded);
     for (name, view_mode) in [("Debug: steps", ViewMode::Steps), ("Debug: normals", ViewMode::Normals)] {
-        choose(&mut harness, &["Shading", "Debug", name]);
+        choose(&mut harness, &["Debug", name]);
         assert_eq!(harness.state().view().view_mode, view_mode);
     }
-    choose(&mut harness, &["Shading", "Debug", "Debug: normals"]);
+    choose(&mut harness, &["Debug", "Debug: normals"]);
     assert_eq!(harness.state().view().view_mode, ViewMode::Shaded, "the same again leads back");
     harness.get_by_label("View").click();
     harness.run();
