@@ -172,6 +172,10 @@ fn seconds_of_light(scenes: [&FlatScene; 4], camera: &Camera, is_enough: impl Fn
     renderer.set_timing(true);
     let mut best = [f64::INFINITY; 4];
     for round in 0..40 {
+        // The first frames of a scene may lack passes whose pipelines are not ready.
+        if round == 3 {
+            best = [f64::INFINITY; 4];
+        }
         for (best, flat) in best.iter_mut().zip(scenes) {
             renderer.render(flat, &[], camera, [160, 160], &mut |_| true).expect("a picture");
             let rows = renderer.timings().unwrap_or(&[]).iter();

@@ -182,6 +182,7 @@ fn samples_have_the_light_of_every_pixel() {
     // As a window draws: a picture while something moves, then its samples.
     let mut shared = shared();
     let renderer = &mut shared.renderer;
+    renderer.set_strategy(EvalStrategy::Tape);
     renderer.set_sparse_light(true);
     let marks = OverlaySettings::default();
     let mut frame = renderer.begin(Slot::Full, &scene.flat, &[], &scene.camera, [48, 48], marks).expect("a frame");
