@@ -104,20 +104,7 @@ pub(super) fn modify(
             let slope = 1.0 / (1.0 + amplitude * frequency);
             grown(same, amplitude, WavesParams { amplitude, frequency, phase: radians(phase), slope }.to_rows())
         }
-        Modifier::Noise { amplitude, size, octaves, seed } => {
-            let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
-            // Each octave has half the height and half the size of the one before, so the same steepness.
-            let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
-            let params = NoiseParams {
-                amplitude: amplitude / total,
-                frequency: 1.0 / size,
-                layers: octaves,
-                seed,
-                slope: 1.0 / (1.0 + steepness),
-                reach: amplitude,
-            };
-            grown(same, amplitude, params.to_rows())
-        }
+        Modifier::Noise { amplitude, size, octaves, seed } => noise(amplitude, size, octaves, seed, same),
         Modifier::Displacement { ref image, height, tile, axis } => {
             let image = image.content().expect("idle without an image");
             let side = tile / image.size[0] as f64;
@@ -176,6 +163,21 @@ fn margin(usual: f64, size: f64, read_to: f64) -> f64 {
 fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
     let reach = if same.bound_slope > 0.0 { by / same.bound_slope } else { 0.0 };
     Modified { rows, bounds: same.bounds.expanded(by), cull_box: same.cull_box.expanded(reach), ..same }
+}
+
+fn noise(amplitude: f64, size: f64, octaves: u32, seed: u32, same: Modified) -> Modified {
+    let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
+    // Each octave has half the height and half the size of the one before, so the same steepness.
+    let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
+    let params = NoiseParams {
+        amplitude: amplitude / total,
+        frequency: 1.0 / size,
+        layers: octaves,
+        seed,
+        slope: 1.0 / (1.0 + steepness),
+        reach: amplitude,
+    };
+    grown(same, amplitude, params.to_rows())
 }
 
 /// The surface moves outward by h, so the field is f − h; its slope is at most 1 plus that of the heights.
@@ -444,9 +446,7 @@ fn repeat(
     if copies > u64::from(MAX_NEIGHBORS) {
         return Err(ModifierRefusal::TooMany(copies as usize));
     }
-    let all = |box_: &Aabb| repeated_bounds(box_, &axes, counts, spacing, offset);
-    let in_cell = Aabb::from_center_half(center, half);
-    let bounds = all(&in_cell);
+    let bounds = repeated_bounds(&Aabb::from_center_half(center, half), &axes, counts, spacing, offset);
     let bound_slope = content.bound_slope.min(1.0);
     let each = |f: &dyn Fn(&Cells) -> f64| [f(&axes[0]), f(&axes[1]), f(&axes[2])];
     let finite = |corner: DVec3| corner.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).to_array();
