@@ -175,7 +175,7 @@ mod tests {
         for_each_shape!(check_shapes);
         let checked = for_each_modifier_params!(check_modifiers);
         let named = ModifierKind::ALL.iter().map(|kind| modifier_layout(*kind).name);
-        assert_eq!(checked, named.filter(|name| *name != "NoParams").collect::<Vec<_>>());
+        assert_eq!(named.filter(|name| *name != "NoParams").collect::<Vec<_>>(), checked);
     }
 
     #[test]
