@@ -22,7 +22,8 @@ pub fn params_file(path: &str) -> Option<String> {
     };
     let shapes = ShapeKind::ALL.iter().map(|kind| kind.eval_layout());
     let mut layouts = shapes.chain(ModifierKind::ALL.iter().map(|kind| modifier_layout(*kind)));
-    let layout = layouts.find_map(|layout| named(layout, name))?;
+    // WGSL has no struct without members.
+    let layout = layouts.find_map(|layout| named(layout, name)).filter(|layout| !layout.members.is_empty())?;
     Some(text(&layout))
 }
 
