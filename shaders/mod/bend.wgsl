@@ -1,7 +1,6 @@
-// Bend: turns the X axis into an arc around a point on Y. a: radius of the arc, 1 / largest
-// stretch, margin, 1 for up and -1 for down; b: half the angle of the content, its heights away
-// from the center and toward it; c, d: center and half extent of the bounds.
+// Bend: turns the X axis into an arc around a point on Y.
 
+#include "generated/params/BendParams.wgsl"
 #include "mod/enclosed.wgsl"
 
 // The angle of (x, y) from the y axis toward x. Two reductions and a polynomial, accurate to 2e-7
@@ -22,22 +21,22 @@ fn bend_angle(x: f32, y: f32) -> f32 {
 }
 
 // Coordinates along the arc and from it toward the center.
-fn bend_place(p: vec3f, a: vec4f) -> vec2f {
-    let height = p.y * a.w;
-    let r = length(vec2f(p.x, a.x - height));
+fn bend_place(p: vec3f, q: BendParams) -> vec2f {
+    let height = p.y * q.side;
+    let r = length(vec2f(p.x, q.radius - height));
     // The radius minus r, without the difference of two large numbers.
-    return vec2f(bend_angle(p.x, a.x - height), (2.0 * a.x * height - p.x * p.x - height * height) / (a.x + r));
+    return vec2f(bend_angle(p.x, q.radius - height), (2.0 * q.radius * height - p.x * p.x - height * height) / (q.radius + r));
 }
 
-fn mod_bend_point(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec3f {
-    let at = bend_place(p, a);
-    return vec3f(at.x * a.x, at.y * a.w, p.z);
+fn mod_bend_point(p: vec3f, k: u32, q: BendParams) -> vec3f {
+    let at = bend_place(p, q);
+    return vec3f(at.x * q.radius, at.y * q.side, p.z);
 }
 
-fn mod_bend_value(f: f32, p: vec3f, a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> f32 {
-    let at = bend_place(p, a);
-    let open = clamp(abs(at.x) - b.x, -1.57079633, 1.57079633);
-    let of_arc = max(max(at.y - b.z, b.y - at.y), (a.x - at.y) * sin(open));
-    let q = abs(p - c.xyz) - d.xyz;
-    return mod_enclosed(f * a.y, max(of_arc, max(max(q.x, q.y), q.z)), a.z);
+fn mod_bend_value(f: f32, p: vec3f, q: BendParams) -> f32 {
+    let at = bend_place(p, q);
+    let open = clamp(abs(at.x) - q.reach, -1.57079633, 1.57079633);
+    let of_arc = max(max(at.y - q.high, q.low - at.y), (q.radius - at.y) * sin(open));
+    let away = abs(p - q.center) - q.half;
+    return mod_enclosed(f * q.slope, max(of_arc, max(max(away.x, away.y), away.z)), q.margin);
 }

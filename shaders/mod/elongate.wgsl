@@ -1,5 +1,7 @@
-// Elongate: cuts the content at the origin and moves the parts 2 a.xyz apart.
+// Elongate: cuts the content at the origin and moves the parts apart.
 
-fn mod_elongate_point(p: vec3f, k: u32, a: vec4f) -> vec3f {
-    return p - clamp(p, -a.xyz, a.xyz);
+#include "generated/params/ElongateParams.wgsl"
+
+fn mod_elongate_point(p: vec3f, k: u32, q: ElongateParams) -> vec3f {
+    return p - clamp(p, -q.half, q.half);
 }

@@ -1,5 +1,6 @@
-// Displacement by layers of value noise. a: amplitude of the first layer, 1 / its size, layers,
-// seed; b: 1 / largest slope, amplitude of all layers together.
+// Displacement by layers of value noise.
+
+#include "generated/params/NoiseParams.wgsl"
 
 // A random number between -1 and 1 for a corner of the grid (O'Neill, "PCG", 2014, one step of its
 // mixing).
@@ -36,14 +37,14 @@ fn noise_value(p: vec3f, seed: u32) -> f32 {
     return mix(low, high, w.z);
 }
 
-fn mod_noise_value(f: f32, p: vec3f, a: vec4f, b: vec4f) -> f32 {
+fn mod_noise_value(f: f32, p: vec3f, q: NoiseParams) -> f32 {
     var moved = f;
-    var amplitude = a.x;
-    var frequency = a.y;
-    for (var layer = 0u; layer < u32(a.z); layer += 1u) {
-        moved += amplitude * noise_value(p * frequency, u32(a.w) + layer);
+    var amplitude = q.amplitude;
+    var frequency = q.frequency;
+    for (var layer = 0u; layer < q.layers; layer += 1u) {
+        moved += amplitude * noise_value(p * frequency, q.seed + layer);
         amplitude *= 0.5;
         frequency *= 2.0;
     }
-    return clamp(moved * b.x, f - b.y, f + b.y);
+    return clamp(moved * q.slope, f - q.reach, f + q.reach);
 }

@@ -1,9 +1,11 @@
-// Onion: walls at the surface and inward from it. a: half thickness, number of walls, spacing.
+// Onion: walls at the surface and inward from it.
 
-fn detach_onion_wall(f: f32, a: vec4f) -> f32 {
-    return clamp(round(-f / a.z), 0.0, a.y - 1.0);
+#include "generated/params/OnionParams.wgsl"
+
+fn detach_onion_wall(f: f32, q: OnionParams) -> f32 {
+    return clamp(round(-f / q.spacing), 0.0, q.walls - 1.0);
 }
 
-fn mod_onion_value(f: f32, p: vec3f, a: vec4f) -> f32 {
-    return abs(f + detach_onion_wall(f, a) * a.z) - a.x;
+fn mod_onion_value(f: f32, p: vec3f, q: OnionParams) -> f32 {
+    return abs(f + detach_onion_wall(f, q) * q.spacing) - q.half;
 }

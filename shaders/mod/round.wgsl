@@ -1,5 +1,7 @@
-// Round: moves the surface outward by a.x.
+// Round: moves the surface outward.
 
-fn mod_round_value(f: f32, p: vec3f, a: vec4f) -> f32 {
-    return f - a.x;
+#include "generated/params/RoundParams.wgsl"
+
+fn mod_round_value(f: f32, p: vec3f, q: RoundParams) -> f32 {
+    return f - q.radius;
 }

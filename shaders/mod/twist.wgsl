@@ -1,17 +1,17 @@
-// Twist: rotates around Y with height. a: radians per meter, 1 / largest stretch, radius of the
-// content, margin; b: center and half extent of the content along Y.
+// Twist: rotates around Y with height.
 
+#include "generated/params/TwistParams.wgsl"
 #include "mod/enclosed.wgsl"
 
-fn mod_twist_point(p: vec3f, k: u32, a: vec4f, b: vec4f) -> vec3f {
-    let reach = b.y + a.w;
-    let angle = a.x * clamp(p.y, b.x - reach, b.x + reach);
+fn mod_twist_point(p: vec3f, k: u32, q: TwistParams) -> vec3f {
+    let reach = q.half + q.margin;
+    let angle = q.rate * clamp(p.y, q.center - reach, q.center + reach);
     let c = cos(angle);
     let s = sin(angle);
     return vec3f(c * p.x - s * p.z, p.y, s * p.x + c * p.z);
 }
 
-fn mod_twist_value(f: f32, p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let away = max(length(p.xz) - a.z, abs(p.y - b.x) - b.y);
-    return mod_enclosed(f * a.y, away, a.w);
+fn mod_twist_value(f: f32, p: vec3f, q: TwistParams) -> f32 {
+    let away = max(length(p.xz) - q.radius, abs(p.y - q.center) - q.half);
+    return mod_enclosed(f * q.slope, away, q.margin);
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
+use super::modifier_params::{RepeatParams, params_of};
 use isolith_bricks::BrickLevels;
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{
@@ -73,14 +74,15 @@ pub struct RepeatedSpace {
 }
 
 impl RepeatedSpace {
-    /// The cells of an array by its rows, see `shaders/mod/repeat.wgsl`. `None` for arrays that turn or mirror their
+    /// The cells of an array by its rows. `None` for arrays that turn or mirror their
     /// copies: these show the texture as a whole.
     pub(super) fn new(rows: &[[f64; 4]], space_from_world: &DAffine3) -> Option<Self> {
-        let [[.., turn], [.., mirrored], ..] = rows else { return None };
-        if *turn != 0.0 || *mirrored != 0.0 {
+        let params: RepeatParams = params_of(rows);
+        if params.turn != 0.0 || params.mirrored != 0 {
             return None;
         }
-        let [spacing, first, last, middle, offset] = [0, 1, 2, 3, 5].map(|i| DVec3::from_slice(&rows[i]));
+        let [spacing, first, last, middle, offset] =
+            [params.spacing, params.first, params.last, params.middle, params.offset].map(DVec3::from);
         let cells = DAffine3::from_scale(spacing.recip()) * DAffine3::from_translation(-middle);
         let steps = DMat3::from_cols(
             DVec3::new(spacing.x, offset.y, offset.z),

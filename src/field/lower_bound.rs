@@ -3,6 +3,7 @@
 use glam::DAffine3;
 
 use super::arrays::Join;
+use super::modifier_params::{TwistParams, params_of};
 use super::operand::{Operand, Value};
 use isolith_geometry::Aabb;
 use isolith_scene::ModifierKind;
@@ -81,7 +82,7 @@ fn radius_of(fold: &[Operand<'_>]) -> f64 {
         [Operand { value: Value::Modified { kind: ModifierKind::Twist, local_from_world, modified, .. }, .. }]
             if *local_from_world == DAffine3::IDENTITY =>
         {
-            modified.rows[0][2]
+            params_of::<TwistParams, _>(&modified.rows).radius
         }
         _ => f64::INFINITY,
     }

@@ -88,6 +88,7 @@ mod mesh_material;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
+pub mod modifier_params;
 mod modifier_reach;
 mod modifier_table;
 mod modify;
@@ -127,7 +128,8 @@ pub use lights::{GpuLight, gpu_lights};
 pub use mesh_material::mesh_material;
 pub use meshes::model_pose;
 pub use modifier_table::{
-    changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
+    changes_value, is_copying, is_rough, modifier_layout, modifier_payload, modifier_payload_row, modifier_rows,
+    moves_point,
 };
 pub use modify::{MAX_NEIGHBORS, REPEAT_REACH};
 pub use moved::move_params;

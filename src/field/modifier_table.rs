@@ -4,7 +4,7 @@
 //!
 //! | entry | what it says |
 //! |---|---|
-//! | `rows` | number of its own rows; `with data`: the last one locates its payload |
+//! | `(Params)` | its parameters; `with data`: a row behind them locates its payload |
 //! | `count` | number of evaluations of the content for one point |
 //! | `start` | bound of the field besides the copies |
 //! | `exists` | whether the k-th copy exists |
@@ -12,9 +12,10 @@
 //! | `point` | position of a point in the k-th copy of the content |
 //! | `value` | the field, from that of the content |
 //! | `rough` | its field may be far below the distance: only a change of sign is a hit |
-//! | `exact` | exactness of the content for a field exact up to `local`; `own` are the modifier's parameters |
+//! | `exact` | exactness of the content for a field exact up to `local` |
 //!
-//! Kinds without rows are written as copies and have no entry of their own.
+//! `q` are the parameters, `rows` the rows that they come from. Kinds without parameters are written as
+//! copies and have no entry of their own.
 
 use super::arrays::{ParamRow, payload_at};
 use super::eval::{
@@ -22,7 +23,11 @@ use super::eval::{
     mod_recursion_point, mod_repeat_count, mod_repeat_exists, mod_repeat_point, mod_repeat_start, mod_taper_point,
     mod_taper_value, mod_twist_point, mod_twist_value, mod_waves_value,
 };
-use isolith_scene::ModifierKind;
+use super::modifier_params::{
+    BendParams, DisplacementParams, ElongateParams, NoParams, NoiseParams, OnionParams, RecursionParams, RepeatParams,
+    RoundParams, TaperParams, TwistParams, WavesParams, params_of,
+};
+use isolith_scene::{EvalParams, ModifierKind, ParamLayout};
 
 /// Whether an argument is given.
 macro_rules! is_given {
@@ -45,26 +50,32 @@ macro_rules! given_or {
 }
 
 macro_rules! modifier_table {
-    ($( $name:ident {
-        $(rows: $rows:literal $(with $data:ident)?,)?
-        $(count: |$count_rows:ident| $count:expr,)?
-        $(start: |$start_p:ident, $start_rows:ident| $start:expr,)?
-        $(exists: |$exists_p:ident, $exists_k:ident, $exists_rows:ident| $exists:expr,)?
-        $(scale: |$scale_k:ident, $scale_rows:ident| $scale:expr,)?
-        $(point: |$point_p:ident, $point_k:ident, $point_rows:ident| $point:expr,)?
-        $(value: |$value_f:ident, $value_p:ident, $value_rows:ident| $value:expr,)?
+    ($( $name:ident($params:ident $(with $data:ident)?) {
+        $(count: |$count_q:ident| $count:expr,)?
+        $(start: |$start_p:ident, $start_q:ident| $start:expr,)?
+        $(exists: |$exists_p:ident, $exists_k:ident, $exists_q:ident| $exists:expr,)?
+        $(scale: |$scale_k:ident, $scale_q:ident| $scale:expr,)?
+        $(point: |$point_p:ident, $point_k:ident, $point_q:ident| $point:expr,)?
+        $(value: |$value_f:ident, $value_p:ident, $value_q:ident, $value_rows:ident| $value:expr,)?
         $(rough: $rough:literal,)?
-        $(exact: |$local:ident, $own:ident| $exact:expr,)?
+        $(exact: |$local:ident, $exact_q:ident| $exact:expr,)?
     } )+) => {
         /// Number of own rows of a modifier, including the one that locates its payload.
         pub const fn modifier_rows(kind: ModifierKind) -> usize {
-            match kind { $( ModifierKind::$name => given_or!(0; $($rows)?), )+ }
+            match kind { $( ModifierKind::$name => {
+                <$params as EvalParams>::LAYOUT.rows() + is_given!($($data)?) as usize
+            } )+ }
+        }
+
+        /// The names of the parameters in these rows, and their places.
+        pub const fn modifier_layout(kind: ModifierKind) -> ParamLayout {
+            match kind { $( ModifierKind::$name => <$params as EvalParams>::LAYOUT, )+ }
         }
 
         /// Index of the row that locates the payload of a modifier, the last of its own rows; `None` for a kind
         /// without a payload.
         pub const fn modifier_payload_row(kind: ModifierKind) -> Option<usize> {
-            let has_data = match kind { $( ModifierKind::$name => is_given!($($($data)?)?), )+ };
+            let has_data = match kind { $( ModifierKind::$name => is_given!($($data)?), )+ };
             if has_data { Some(modifier_rows(kind) - 1) } else { None }
         }
 
@@ -88,38 +99,38 @@ macro_rules! modifier_table {
             match kind { $( ModifierKind::$name => given_or!(false; $($rough)?), )+ }
         }
 
-        /// The exactness that the content needs for the modifier's field to be exact up to `local` in its own space;
-        /// `own` reads its parameters by row and column.
+        /// The exactness that the content needs for the modifier's field to be exact up to `local` in its own space.
         #[allow(unused_variables, reason = "some need no numbers of their own")]
-        pub(super) fn content_exactness(kind: ModifierKind, local: f64, own: &dyn Fn(usize, usize) -> f64) -> f64 {
+        pub(super) fn content_exactness(kind: ModifierKind, local: f64, rows: &[ParamRow]) -> f64 {
             match kind { $( ModifierKind::$name => given_or!(
-                unreachable!("this is written as copies"); $( { let ($local, $own) = (local, own); $exact } )?
+                unreachable!("this is written as copies");
+                $( { let ($local, $exact_q) = (local, &params_of::<$params, _>(rows)); $exact } )?
             ), )+ }
         }
 
         /// Number of evaluations of the content for one point.
         pub(super) fn modifier_count(kind: ModifierKind, rows: &[ParamRow]) -> u32 {
-            match kind { $( ModifierKind::$name => given_or!(1; $( { let $count_rows = rows; $count } )?), )+ }
+            match kind { $( ModifierKind::$name => given_or!(1; $( { let $count_q = &params_of::<$params, _>(rows); $count } )?), )+ }
         }
 
         /// The bound of the field besides the copies.
         pub(super) fn modifier_start<T: Real>(kind: ModifierKind, p: [T; 3], rows: &[ParamRow]) -> T {
             match kind { $( ModifierKind::$name => given_or!(
-                T::constant(f64::INFINITY); $( { let ($start_p, $start_rows) = (p, rows); $start } )?
+                T::constant(f64::INFINITY); $( { let ($start_p, $start_q) = (p, &params_of::<$params, _>(rows)); $start } )?
             ), )+ }
         }
 
         /// Whether the k-th copy exists.
         pub(super) fn modifier_exists<T: Real>(kind: ModifierKind, p: [T; 3], k: u32, rows: &[ParamRow]) -> bool {
             match kind { $( ModifierKind::$name => given_or!(
-                true; $( { let ($exists_p, $exists_k, $exists_rows) = (p, k, rows); $exists } )?
+                true; $( { let ($exists_p, $exists_k, $exists_q) = (p, k, &params_of::<$params, _>(rows)); $exists } )?
             ), )+ }
         }
 
         /// The size of the k-th copy.
         pub(super) fn modifier_scale(kind: ModifierKind, k: u32, rows: &[ParamRow]) -> f64 {
             match kind { $( ModifierKind::$name => given_or!(
-                1.0; $( { let ($scale_k, $scale_rows) = (k, rows); $scale } )?
+                1.0; $( { let ($scale_k, $scale_q) = (k, &params_of::<$params, _>(rows)); $scale } )?
             ), )+ }
         }
 
@@ -127,7 +138,7 @@ macro_rules! modifier_table {
         #[allow(unused_variables, reason = "most have one copy")]
         pub(super) fn modifier_point<T: Real>(kind: ModifierKind, p: [T; 3], k: u32, rows: &[ParamRow]) -> [T; 3] {
             match kind { $( ModifierKind::$name => given_or!(
-                p; $( { let ($point_p, $point_k, $point_rows) = (p, k, rows); $point } )?
+                p; $( { let ($point_p, $point_k, $point_q) = (p, k, &params_of::<$params, _>(rows)); $point } )?
             ), )+ }
         }
 
@@ -135,83 +146,76 @@ macro_rules! modifier_table {
         #[allow(unused_variables, reason = "some are the same everywhere")]
         pub(super) fn modifier_value<T: Real>(kind: ModifierKind, f: T, p: [T; 3], rows: &[ParamRow]) -> T {
             match kind { $( ModifierKind::$name => given_or!(
-                f; $( { let ($value_f, $value_p, $value_rows) = (f, p, rows); $value } )?
+                f; $( {
+                    let ($value_f, $value_p) = (f, p);
+                    let ($value_q, $value_rows) = (&params_of::<$params, _>(rows), rows);
+                    $value
+                } )?
             ), )+ }
         }
     };
 }
 
 modifier_table! {
-    Mirror {}
-    Repeat {
-        rows: 10,
-        count: |rows| mod_repeat_count(rows),
-        start: |p, rows| mod_repeat_start(p, rows),
-        exists: |p, k, rows| mod_repeat_exists(p, k, rows),
-        point: |p, k, rows| mod_repeat_point(p, k, rows),
-        exact: |local, own| local,
+    Mirror(NoParams) {}
+    Repeat(RepeatParams) {
+        count: |q| mod_repeat_count(q),
+        start: |p, q| mod_repeat_start(p, q),
+        exists: |p, k, q| mod_repeat_exists(p, k, q),
+        point: |p, k, q| mod_repeat_point(p, k, q),
+        exact: |local, q| local,
     }
-    Polar {}
-    Recursion {
-        rows: 6,
-        count: |rows| rows[1][3] as u32,
-        scale: |k, rows| f64::from(rows[0][3]).powi(k as i32),
-        point: |p, k, rows| mod_recursion_point(p, k, rows),
-        exact: |local, own| local / own(0, 3).min(1.0).powi(own(1, 3) as i32 - 1),
+    Polar(NoParams) {}
+    Recursion(RecursionParams) {
+        count: |q| q.count,
+        scale: |k, q| q.scale.powi(k as i32),
+        point: |p, k, q| mod_recursion_point(p, k, q),
+        exact: |local, q| local / q.scale.min(1.0).powi(q.count as i32 - 1),
     }
-    Twist {
-        rows: 2,
-        point: |p, k, rows| mod_twist_point(p, rows),
-        value: |f, p, rows| mod_twist_value(f, p, rows),
+    Twist(TwistParams) {
+        point: |p, k, q| mod_twist_point(p, q),
+        value: |f, p, q, rows| mod_twist_value(f, p, q),
         rough: true,
-        exact: |local, own| local / own(0, 1),
+        exact: |local, q| local / q.slope,
     }
-    Bend {
-        rows: 4,
-        point: |p, k, rows| mod_bend_point(p, rows),
-        value: |f, p, rows| mod_bend_value(f, p, rows),
+    Bend(BendParams) {
+        point: |p, k, q| mod_bend_point(p, q),
+        value: |f, p, q, rows| mod_bend_value(f, p, q),
         rough: true,
-        exact: |local, own| local / own(0, 1),
+        exact: |local, q| local / q.slope,
     }
-    Taper {
-        rows: 3,
-        point: |p, k, rows| mod_taper_point(p, rows),
-        value: |f, p, rows| mod_taper_value(f, p, rows),
+    Taper(TaperParams) {
+        point: |p, k, q| mod_taper_point(p, q),
+        value: |f, p, q, rows| mod_taper_value(f, p, q),
         rough: true,
-        exact: |local, own| local / own(0, 1),
+        exact: |local, q| local / q.slope,
     }
-    Elongate {
-        rows: 1,
-        point: |p, k, rows| mod_elongate_point(p, rows),
-        exact: |local, own| local,
+    Elongate(ElongateParams) {
+        point: |p, k, q| mod_elongate_point(p, q),
+        exact: |local, q| local,
     }
-    Round {
-        rows: 1,
-        value: |f, p, rows| f - f64::from(rows[0][0]),
-        exact: |local, own| local + own(0, 0).abs(),
+    Round(RoundParams) {
+        value: |f, p, q, rows| f - q.radius,
+        exact: |local, q| local + q.radius.abs(),
     }
-    Onion {
-        rows: 1,
-        value: |f, p, rows| mod_onion_value(f, rows),
-        exact: |local, own| local + own(0, 0) + own(0, 1) * own(0, 2),
+    Onion(OnionParams) {
+        value: |f, p, q, rows| mod_onion_value(f, q),
+        exact: |local, q| local + q.half + q.walls * q.spacing,
     }
-    Waves {
-        rows: 1,
-        value: |f, p, rows| mod_waves_value(f, p, rows),
+    Waves(WavesParams) {
+        value: |f, p, q, rows| mod_waves_value(f, p, q),
         rough: true,
-        exact: |local, own| local / own(0, 3) + own(0, 0).abs(),
+        exact: |local, q| local / q.slope + q.amplitude.abs(),
     }
-    Noise {
-        rows: 2,
-        value: |f, p, rows| mod_noise_value(f, p, rows),
+    Noise(NoiseParams) {
+        value: |f, p, q, rows| mod_noise_value(f, p, q),
         rough: true,
-        exact: |local, own| local / own(1, 0) + own(1, 1),
+        exact: |local, q| local / q.slope + q.reach,
     }
-    Displacement {
-        rows: 3 with data,
-        value: |f, p, rows| mod_displacement_value(f, p, rows, modifier_payload(ModifierKind::Displacement, rows)),
+    Displacement(DisplacementParams with data) {
+        value: |f, p, q, rows| mod_displacement_value(f, p, q, modifier_payload(ModifierKind::Displacement, rows)),
         rough: true,
-        exact: |local, own| local / own(1, 0) + own(1, 1).abs().max(own(1, 2).abs()),
+        exact: |local, q| local / q.slope + q.least.abs().max(q.greatest.abs()),
     }
 }
 
@@ -234,9 +238,10 @@ mod tests {
             assert!(!is_copying(kind) || moves_point(kind), "{kind:?}: its copies stand somewhere");
             assert!(modifier_payload_row(kind).is_none_or(|row| row < modifier_rows(kind)), "{kind:?}");
             if has_rows {
-                // The element in this place is a number of copies.
-                let own = |row: usize, column: usize| if (row, column) == (1, 3) { 2.0 } else { 0.5 };
-                assert!(content_exactness(kind, 1.0, &own) >= 1.0, "{kind:?}: never less exact than the field");
+                let mut rows = [[0.5; 4]; 10];
+                // The number of copies of a recursion.
+                rows[1][3] = 2.0;
+                assert!(content_exactness(kind, 1.0, &rows) >= 1.0, "{kind:?}: never less exact than the field");
             }
         }
     }

@@ -12,12 +12,16 @@ use std::rc::Rc;
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::lower_bound::LowerBound;
+use super::modifier_params::{
+    BendParams, DisplacementParams, ElongateParams, NoiseParams, OnionParams, RecursionParams, RepeatParams,
+    RoundParams, TaperParams, TwistParams, WavesParams,
+};
 use super::modifier_reach::too_fine;
 use super::modifier_table::modifier_rows;
 use super::operand::Modified;
 use super::prepare::spline;
 use isolith_geometry::Aabb;
-use isolith_scene::{Axis, Heights, Modifier};
+use isolith_scene::{Axis, EvalParams, Heights, Modifier};
 
 /// Why a modifier cannot act.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -86,27 +90,21 @@ pub(super) fn modify(
         Modifier::Elongate { length } => {
             let half = DVec3::from(length) * 0.5;
             let grown = |b: Aabb| Aabb::new(b.min - half, b.max + half);
-            let rows = vec![half.extend(0.0).to_array()];
+            let rows = ElongateParams { half: half.to_array() }.to_rows();
             Modified { rows, bounds: grown(same.bounds), cull_box: grown(same.cull_box), ..same }
         }
-        Modifier::Round { radius } => grown(same, radius, vec![[radius, 0.0, 0.0, 0.0]]),
+        Modifier::Round { radius } => grown(same, radius, RoundParams { radius }.to_rows()),
         Modifier::Onion { thickness, walls, spacing } => {
             let half = 0.5 * thickness;
-            grown(same, half, vec![[half, f64::from(walls), spacing, 0.0]])
+            grown(same, half, OnionParams { half, walls: f64::from(walls), spacing }.to_rows())
         }
         Modifier::Waves { amplitude, length, phase } => {
             let frequency = std::f64::consts::TAU / length;
             // |∇ sin x sin y sin z| is at most 1.
             let slope = 1.0 / (1.0 + amplitude * frequency);
-            grown(same, amplitude, vec![[amplitude, frequency, radians(phase), slope]])
+            grown(same, amplitude, WavesParams { amplitude, frequency, phase: radians(phase), slope }.to_rows())
         }
-        Modifier::Noise { amplitude, size, octaves, seed } => {
-            let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
-            // Each octave has half the height and half the size of the one before, so the same steepness.
-            let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
-            let params = [amplitude / total, 1.0 / size, f64::from(octaves), f64::from(seed)];
-            grown(same, amplitude, vec![params, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
-        }
+        Modifier::Noise { amplitude, size, octaves, seed } => noise(amplitude, size, octaves, seed, same),
         Modifier::Displacement { ref image, height, tile, axis } => {
             let image = image.content().expect("idle without an image");
             let side = tile / image.size[0] as f64;
@@ -167,6 +165,21 @@ fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
     Modified { rows, bounds: same.bounds.expanded(by), cull_box: same.cull_box.expanded(reach), ..same }
 }
 
+fn noise(amplitude: f64, size: f64, octaves: u32, seed: u32, same: Modified) -> Modified {
+    let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
+    // Each octave has half the height and half the size of the one before, so the same steepness.
+    let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
+    let params = NoiseParams {
+        amplitude: amplitude / total,
+        frequency: 1.0 / size,
+        layers: octaves,
+        seed,
+        slope: 1.0 / (1.0 + steepness),
+        reach: amplitude,
+    };
+    grown(same, amplitude, params.to_rows())
+}
+
 /// The surface moves outward by h, so the field is f − h; its slope is at most 1 plus that of the heights.
 fn displacement(
     image: &Heights,
@@ -180,11 +193,15 @@ fn displacement(
     let side = tile / columns;
     let heights = || image.values.iter().map(|v| v * height);
     let (least, greatest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
-    let rows = vec![
-        [1.0 / tile, 1.0 / (side * lines), columns, lines],
-        [1.0 / (1.0 + steepest), least, greatest, f64::from(axis as u8)],
-    ];
-    Modified { data, ..grown(same, greatest.max(0.0), rows) }
+    let params = DisplacementParams {
+        tiles: [1.0 / tile, 1.0 / (side * lines)],
+        cells: [columns, lines],
+        slope: 1.0 / (1.0 + steepest),
+        least,
+        greatest,
+        axis: axis as u32,
+    };
+    Modified { data, ..grown(same, greatest.max(0.0), params.to_rows()) }
 }
 
 /// A deformation whose field is at least the distance to its bound along some axis: the largest of three
@@ -210,7 +227,8 @@ fn twist(angle: f64, content: Aabb, radius: f64, read_to: f64, same: Modified) -
     let margin = margin(MARGIN * radius.max(0.1 * half), radius.max(half), read_to);
     let stretch = shear(angle.abs() * (radius + margin));
     let bounds = Aabb::new(DVec3::new(-radius, content.min.y, -radius), DVec3::new(radius, content.max.y, radius));
-    enclosed(same, bounds, vec![[angle, 1.0 / stretch, radius, margin], [middle, half, 0.0, 0.0]])
+    let params = TwistParams { rate: angle, slope: 1.0 / stretch, radius, margin, center: middle, half };
+    enclosed(same, bounds, params.to_rows())
 }
 
 fn bend(angle: f64, content: Aabb, read_to: f64, same: Modified) -> Modified {
@@ -240,14 +258,18 @@ fn bend(angle: f64, content: Aabb, read_to: f64, same: Modified) -> Modified {
     }
     let stretch = (radius / (room - margin).max(1e-3 * room)).max(1.0);
     let bounds = bent_bounds(curvature, sign, reach, [low, high], &content);
-    let (center, half) = (bounds.center(), bounds.half());
-    let rows = vec![
-        [radius, 1.0 / stretch, margin, sign],
-        [reach * curvature, low, high, 0.0],
-        center.extend(0.0).to_array(),
-        half.extend(0.0).to_array(),
-    ];
-    Modified { warning, ..enclosed(same, bounds, rows) }
+    let params = BendParams {
+        radius,
+        slope: 1.0 / stretch,
+        margin,
+        side: sign,
+        reach: reach * curvature,
+        low,
+        high,
+        center: bounds.center().to_array(),
+        half: bounds.half().to_array(),
+    };
+    Modified { warning, ..enclosed(same, bounds, params.to_rows()) }
 }
 
 /// The box around an arc: it contains the ends, and the points where the arc passes an axis.
@@ -291,12 +313,16 @@ fn taper(change: f64, content: Aabb, read_to: f64, same: Modified) -> Modified {
     let far = |v: f64, outward: bool| if (v >= 0.0) == outward { v * widest } else { v * narrowest };
     let corner = |v: DVec3, outward| DVec3::new(far(v.x, outward), v.y, far(v.z, outward));
     let bounds = Aabb::new(corner(content.min, false), corner(content.max, true));
-    let rows = vec![
-        [used, 1.0 / stretch, margin, 0.0],
-        bounds.center().extend(content.min.y).to_array(),
-        bounds.half().extend(content.max.y).to_array(),
-    ];
-    Modified { warning, ..enclosed(same, bounds, rows) }
+    let params = TaperParams {
+        rate: used,
+        slope: 1.0 / stretch,
+        margin,
+        center: bounds.center().to_array(),
+        low: content.min.y,
+        half: bounds.half().to_array(),
+        high: content.max.y,
+    };
+    Modified { warning, ..enclosed(same, bounds, params.to_rows()) }
 }
 
 fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [bool; 3], same: Modified) -> Modified {
@@ -317,17 +343,21 @@ fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [
     // Folds space to the side of the next copy.
     let child = if same.bounds.is_finite() { parent_from_child.transform_point3(same.bounds.center()) } else { offset };
     let flag = |i: usize| (1 << i) + if child[i] < 0.0 { 8 << i } else { 0 };
-    let flags = f64::from((0..3).filter(|i| mirrored[*i]).map(flag).sum::<i32>());
     let inverse = rotation.transpose();
     let (center, half) = finite_box(&same.cull_box);
-    let rows = vec![
-        offset.extend(scale).to_array(),
-        inverse.row(0).extend(f64::from(count)).to_array(),
-        inverse.row(1).extend(flags).to_array(),
-        inverse.row(2).extend(0.0).to_array(),
-        center.extend(same.bound_slope).to_array(),
-        half.extend(0.0).to_array(),
-    ];
+    let params = RecursionParams {
+        offset: offset.to_array(),
+        scale,
+        inverse_x: inverse.row(0).to_array(),
+        count,
+        inverse_y: inverse.row(1).to_array(),
+        mirrored: (0..3).filter(|i| mirrored[*i]).map(flag).sum(),
+        inverse_z: inverse.row(2).to_array(),
+        center: center.to_array(),
+        slope: same.bound_slope,
+        half: half.to_array(),
+    };
+    let rows = params.to_rows();
     Modified { rows, bounds: all_levels(same.bounds), cull_box: all_levels(same.cull_box), copies: count, ..same }
 }
 
@@ -416,25 +446,27 @@ fn repeat(
     if copies > u64::from(MAX_NEIGHBORS) {
         return Err(ModifierRefusal::TooMany(copies as usize));
     }
-    let all = |box_: &Aabb| repeated_bounds(box_, &axes, counts, spacing, offset);
-    let in_cell = Aabb::from_center_half(center, half);
-    let bounds = all(&in_cell);
-    let flags: f64 = mirrored.iter().enumerate().map(|(i, on)| f64::from(u8::from(*on)) * f64::from(1 << i)).sum();
-    let each = |f: &dyn Fn(&Cells) -> f64| DVec3::new(f(&axes[0]), f(&axes[1]), f(&axes[2]));
-    let code = axes.iter().rev().fold(0.0, |code, a| code * 128.0 + f64::from(a.candidates));
-    let rows = vec![
-        DVec3::from(spacing).extend(turn).to_array(),
-        each(&|a| a.first).extend(flags).to_array(),
-        each(&|a| a.last).extend(code).to_array(),
-        each(&|a| a.middle).extend(content.bound_slope.min(1.0)).to_array(),
-        each(&|a| a.half).extend(0.0).to_array(),
-        DVec3::from(offset).extend(0.0).to_array(),
-        DVec3::from(carve_from.map(f64::from)).extend(0.0).to_array(),
-        DVec3::from(carve_to.map(f64::from)).extend(0.0).to_array(),
-        bounds.min.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
-        bounds.max.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
-    ];
+    let bounds = repeated_bounds(&Aabb::from_center_half(center, half), &axes, counts, spacing, offset);
     let bound_slope = content.bound_slope.min(1.0);
+    let each = |f: &dyn Fn(&Cells) -> f64| [f(&axes[0]), f(&axes[1]), f(&axes[2])];
+    let finite = |corner: DVec3| corner.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).to_array();
+    let params = RepeatParams {
+        spacing,
+        turn,
+        first: each(&|a| a.first),
+        mirrored: mirrored.iter().enumerate().map(|(i, on)| u32::from(*on) << i).sum(),
+        last: each(&|a| a.last),
+        candidates: axes.iter().rev().fold(0, |code, a| code * 128 + a.candidates),
+        middle: each(&|a| a.middle),
+        slope: bound_slope,
+        half: each(&|a| a.half),
+        offset,
+        carve_from: carve_from.map(f64::from),
+        carve_to: carve_to.map(f64::from),
+        least: finite(bounds.min),
+        greatest: finite(bounds.max),
+    };
+    let rows = params.to_rows();
     Ok(Modified { rows, bounds, cull_box: bounds, bound_slope, copies: copies as u32, warning, ..same })
 }
 

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::arrays::{Component, FlatNode, FlatScene, MODIFIER_ROWS, ParamRow};
+use super::modifier_params::{RepeatParams, params_of, write_params};
 use isolith_scene::ModifierKind;
 
 /// Rewrites the rows of `component` in `params`, which are those of `flat`, relative to the point at `shift` from its
@@ -43,29 +44,30 @@ fn step(node: &FlatNode) -> usize {
     if node.modifier().is_some() { node.extent as usize } else { 1 }
 }
 
-/// Counts the cells of a repetition from one near `local`, a point in its space; `rows` are its own, see
-/// `shaders/mod/repeat.wgsl`. Returns the position of that cell.
+/// Counts the cells of a repetition from one near `local`, a point in its space; `rows` are its own. Returns the
+/// position of that cell.
 fn move_repeat(local: DVec3, rows: &mut [ParamRow]) -> DVec3 {
-    let of = |row: usize| DVec3::from_slice(&rows[row].map(f64::from));
-    let (spacing, turn, flags) = (of(0), rows[0][3], rows[1][3] as u32);
-    let (first, last, middle, offset) = (of(1), of(2), of(3), of(5));
+    let mut params: RepeatParams = params_of(rows);
     // The turn of a cell follows from its number, so the cells keep their numbers.
-    if turn != 0.0 {
+    if params.turn != 0.0 {
         return DVec3::ZERO;
     }
+    let [spacing, first, last, middle, offset] =
+        [params.spacing, params.first, params.last, params.middle, params.offset].map(DVec3::from);
     let mut cell = DVec3::ZERO;
     // The cell along Y shifts rows along X.
     for axis in [1, 2, 0] {
         let beside = if axis == 0 { offset.x * cell.y } else { 0.0 };
         let count = ((local[axis] - beside - middle[axis]) / spacing[axis]).clamp(first[axis], last[axis]);
         // If every other cell is mirrored, only an even cell can replace the first.
-        cell[axis] = if flags >> axis & 1 == 1 { (0.5 * count).round() * 2.0 } else { count.round() };
+        cell[axis] = if params.mirrored >> axis & 1 == 1 { (0.5 * count).round() * 2.0 } else { count.round() };
     }
     let place = cell * spacing + DVec3::new(offset.x * cell.y, offset.y * cell.x, offset.z * cell.x);
-    for (row, by) in [(1, cell), (2, cell), (6, cell), (7, cell), (8, place), (9, place)] {
-        for axis in 0..3 {
-            rows[row][axis] = (f64::from(rows[row][axis]) - by[axis]) as f32;
-        }
+    let RepeatParams { first, last, carve_from, carve_to, least, greatest, .. } = &mut params;
+    let corners = [first, last, carve_from, carve_to].map(|corner| (corner, cell));
+    for (corner, by) in corners.into_iter().chain([least, greatest].map(|corner| (corner, place))) {
+        *corner = (DVec3::from(*corner) - by).to_array();
     }
+    write_params(&params, rows);
     place
 }

@@ -63,7 +63,7 @@ pub(super) enum Value<'a> {
 /// A modifier that stays in the arrays, with the bounds of its result.
 #[derive(Clone, Debug)]
 pub(super) struct Modified {
-    /// Its rows, see `shaders/mod/`.
+    /// Its rows, see `modifier_params`.
     pub rows: Vec<[f64; 4]>,
     /// Its payload; empty for most.
     pub data: Rc<[[f64; 4]]>,

@@ -6,7 +6,9 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 
 use super::dual::dual;
 use super::files::library;
-use super::modifiers::{file, own_rows};
+use super::modifiers::file;
+use super::params::include;
+use isolith_field::{modifier_layout, modifier_payload_row};
 use isolith_scene::{ModifierKind, ShapeKind};
 
 /// The function of a shape, or one of a modifier (see [`modifier_gradient`]), with its gradient.
@@ -50,9 +52,13 @@ fn modifier_gradient(function: &str) -> Option<String> {
     let kind = ModifierKind::ALL.iter().copied().find(|kind| file(*kind) == name)?;
     // All three may differentiate the same function by different arguments, so each has its own copy of the source.
     let text = renamed(&library(&format!("mod/{name}.wgsl")).ok()?, &format!("{way}_{name}"));
-    let text = text.lines().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
-    let rows = own_rows(kind, &|i| format!("r{i}: vec4f"), &|_| "data: u32".to_owned());
-    let passed = own_rows(kind, &|i| format!("r{i}"), &|_| "data".to_owned());
+    let (structs, text): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with("struct "));
+    let text = text.into_iter().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
+    let layout = modifier_layout(kind);
+    let [rows, passed] = match modifier_payload_row(kind) {
+        Some(_) => [format!(", q: {}, data: u32", layout.name), ", q, data".to_owned()],
+        None => [format!(", q: {}", layout.name), ", q".to_owned()],
+    };
     let wrapper = match way {
         "pull" => format!(
             "fn {function}(p: vec3f, v: vec3f, k: u32{rows}) -> f32 {{\n    return dot(v, \
@@ -68,8 +74,8 @@ fn modifier_gradient(function: &str) -> Option<String> {
         _ => return None,
     };
     let source = format!("{text}\n{wrapper}");
-    let derived = dual(&with_rows(source.clone()), function).ok()?;
-    Some(format!("{source}{derived}"))
+    let derived = dual(&with_rows(format!("{}\n{source}", structs.join("\n"))), function).ok()?;
+    Some(format!("{}\n{source}{derived}", include(&layout)))
 }
 
 /// The source with `_suffix` appended to the name of each function.

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use isolith_field::{FlatNode, changes_value, is_copying, modifier_payload_row, modifier_rows, moves_point};
+use super::params::{load_include, loaded};
+use isolith_field::{FlatNode, changes_value, is_copying, modifier_layout, modifier_payload_row, moves_point};
 use isolith_scene::ModifierKind;
 
 /// The name of a modifier's file.
@@ -21,6 +22,7 @@ pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     let mut out = String::new();
     for kind in modifiers {
         line(&mut out, &modifier_include(*kind));
+        line(&mut out, &load_include(&modifier_layout(*kind)));
     }
     line(&mut out, "const NO_COPY: u32 = 0xffffffffu;");
     let copying = |kind: &ModifierKind| is_copying(*kind);
@@ -70,18 +72,13 @@ pub fn modifier_gradients_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     out
 }
 
-/// The arguments of a modifier's function: `first`, then its rows, which are read from `row` on.
+/// The arguments of a modifier's function: `first`, its parameters, read from their rows, and the start of its payload
+/// rows.
 fn arguments(kind: ModifierKind, first: &str) -> String {
-    let row = |i: usize| format!("scene_row(row + {i}u)");
-    let rows = own_rows(kind, &row, &|i| format!("row + {i}u + u32({}.y)", row(i)));
-    if first.is_empty() { rows.trim_start_matches(", ").to_owned() } else { format!("{first}{rows}") }
-}
-
-/// A modifier's own rows as further arguments: the text that `row` returns for each, but for the row with the place of
-/// its payload the text that `data` returns.
-pub fn own_rows(kind: ModifierKind, row: &dyn Fn(usize) -> String, data: &dyn Fn(usize) -> String) -> String {
-    let argument = |i: usize| if modifier_payload_row(kind) == Some(i) { data(i) } else { row(i) };
-    (0..modifier_rows(kind)).map(|i| format!(", {}", argument(i))).collect()
+    let params = loaded(&modifier_layout(kind), "row");
+    let data =
+        modifier_payload_row(kind).map_or(String::new(), |i| format!(", row + {i}u + u32(scene_row(row + {i}u).y)"));
+    format!("{first}{params}{data}").trim_start_matches(", ").to_owned()
 }
 
 /// A function that selects among the calls of the modifiers.

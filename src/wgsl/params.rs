@@ -9,7 +9,8 @@
 
 use std::fmt::Write as _;
 
-use isolith_scene::{MemberType, ParamLayout, ShapeKind};
+use isolith_field::modifier_layout;
+use isolith_scene::{MemberType, ModifierKind, ParamLayout, ShapeKind};
 
 /// The text of a generated file, by its path.
 pub fn params_file(path: &str) -> Option<String> {
@@ -19,7 +20,10 @@ pub fn params_file(path: &str) -> Option<String> {
         "load" => load_wgsl,
         _ => return None,
     };
-    let layout = ShapeKind::ALL.iter().find_map(|kind| named(kind.eval_layout(), name))?;
+    let shapes = ShapeKind::ALL.iter().map(|kind| kind.eval_layout());
+    let mut layouts = shapes.chain(ModifierKind::ALL.iter().map(|kind| modifier_layout(*kind)));
+    // WGSL has no struct without members.
+    let layout = layouts.find_map(|layout| named(layout, name)).filter(|layout| !layout.members.is_empty())?;
     Some(text(&layout))
 }
 
@@ -54,7 +58,7 @@ fn struct_wgsl(layout: &ParamLayout) -> String {
 }
 
 /// The line that includes a struct.
-fn include(layout: &ParamLayout) -> String {
+pub fn include(layout: &ParamLayout) -> String {
     format!("#include \"generated/params/{}.wgsl\"", layout.name)
 }
 
@@ -95,8 +99,8 @@ pub fn built(layout: &ParamLayout, row: &dyn Fn(usize) -> String) -> String {
     if layout.members.is_empty() { String::new() } else { format!(", {}", constructed(layout, row)) }
 }
 
-/// The constructor of a struct from its rows.
-fn constructed(layout: &ParamLayout, row: &dyn Fn(usize) -> String) -> String {
+/// The constructor of a struct from its rows; `row` returns the name of each.
+pub fn constructed(layout: &ParamLayout, row: &dyn Fn(usize) -> String) -> String {
     constructed_from(layout, 0, row)
 }
 
@@ -120,6 +124,7 @@ mod tests {
     use super::*;
     use crate::dual::Machine;
     use crate::files::library;
+    use isolith_field::{for_each_modifier_params, modifier_params};
     use isolith_scene::{EvalParams, for_each_shape, shape_params};
 
     /// The function that reads these parameters, with all that it needs. The rows hold 1, 2, 3 and so on.
@@ -159,9 +164,19 @@ mod tests {
         };
     }
 
+    macro_rules! check_modifiers {
+        ($($params:ident)+) => {{
+            $( check::<modifier_params::$params>(); )+
+            [$( stringify!($params) ),+]
+        }};
+    }
+
     #[test]
     fn wgsl_reads_what_rust_packs() {
         for_each_shape!(check_shapes);
+        let checked = for_each_modifier_params!(check_modifiers);
+        let named = ModifierKind::ALL.iter().map(|kind| modifier_layout(*kind).name);
+        assert_eq!(named.filter(|name| *name != "NoParams").collect::<Vec<_>>(), checked);
     }
 
     #[test]

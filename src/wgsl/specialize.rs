@@ -5,10 +5,13 @@ use std::collections::BTreeSet;
 use super::calls::{arguments, data_argument, gradient_include, read_entry_rows, select_by_shape, shape_include};
 use super::lookahead;
 use super::material_weights::material_weights;
-use super::modifiers::{self, file, modifier_include};
+use super::modifiers::{file, modifier_include};
 use super::options::{Options, SkipMode};
+use super::params::constructed;
 use super::structure::{EntryKind, ShapeSet, Structure, StructureEntry};
-use isolith_field::{GROUP_ROWS, Join, MODIFIER_ROWS, changes_value, is_copying, moves_point};
+use isolith_field::{
+    GROUP_ROWS, Join, MODIFIER_ROWS, changes_value, is_copying, modifier_layout, modifier_payload_row, moves_point,
+};
 use isolith_scene::{ModifierKind, ShapeKind};
 
 /// The two folds over a structure.
@@ -279,7 +282,9 @@ impl FoldWriter<'_> {
         let [x, y, z] = [0, 1, 2].map(|i| row + GROUP_ROWS + i);
         let outside = self.point().to_owned();
         self.line(&format!("    let a{at} = {placed}({outside}, q{x}, q{y}, q{z});"));
-        let (name, rows) = (file(kind), own_rows(kind, row));
+        let params = constructed(&modifier_layout(kind), &|i| format!("q{}", row + MODIFIER_ROWS + i));
+        self.line(&format!("    let m{at} = {params};"));
+        let (name, rows) = (file(kind), own_arguments(at, kind, row));
         if is_copying(kind) {
             self.line(&format!("    var v{at} = mod_{name}_start(a{at}{rows});"));
             self.line(&format!("    var k{at} = 0u;\n    loop {{"));
@@ -295,7 +300,7 @@ impl FoldWriter<'_> {
 
     fn close_modifier(&mut self, level: usize, at: usize, entry: &StructureEntry, kind: ModifierKind, row: usize) {
         self.points.pop();
-        let (name, rows) = (file(kind), own_rows(kind, row));
+        let (name, rows) = (file(kind), own_arguments(at, kind, row));
         if is_copying(kind) {
             self.line(&format!("    v{at} = min(v{at}, s{level} * mod_{name}_scale(k{at}{rows}));"));
             self.line(&format!("    k{at} += 1u;\n    }}\n    s{level} = v{at};"));
@@ -330,8 +335,8 @@ fn lookahead_minimum(level: usize, at: usize, entry: &StructureEntry) -> String 
     if entry.is_leaf() { format!("a{at}") } else { format!("h{}", level + 1) }
 }
 
-/// A modifier's own rows as further arguments.
-fn own_rows(kind: ModifierKind, row: usize) -> String {
-    let at = row + MODIFIER_ROWS;
-    modifiers::own_rows(kind, &|i| format!("q{}", at + i), &|i| data_argument(at + i))
+/// The parameters of a modifier and the start of its payload rows, as further arguments.
+fn own_arguments(at: usize, kind: ModifierKind, row: usize) -> String {
+    let data = modifier_payload_row(kind).map(|i| format!(", {}", data_argument(row + MODIFIER_ROWS + i)));
+    format!(", m{at}{}", data.unwrap_or_default())
 }

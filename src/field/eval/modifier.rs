@@ -1,16 +1,16 @@
 //! The modifiers: how they map a point into the space of their content, and how they change its field. Each function
-//! is the counterpart of the function of the same name in `shaders/mod/`, which documents the rows.
+//! is the counterpart of the function of the same name in `shaders/mod/`; `modifier_params` says what they read.
 //! `field/modifier_table.rs` lists the functions of each kind.
 
 use super::Real;
 use super::heightfield::sdf_heights;
 use crate::ParamRow;
+use crate::modifier_params::{
+    BendParams, DisplacementParams, ElongateParams, NoiseParams, OnionParams, RecursionParams, RepeatParams,
+    TaperParams, TwistParams, WavesParams,
+};
 
 type Point<T> = [T; 3];
-
-fn row(rows: &[ParamRow], i: usize) -> [f64; 4] {
-    rows[i].map(f64::from)
-}
 
 fn length<T: Real, const N: usize>(v: [T; N]) -> T {
     v.into_iter().fold(T::constant(0.0), |sum, x| sum + x.squared()).sqrt()
@@ -20,15 +20,14 @@ fn clamp<T: Real>(x: T, low: f64, high: f64) -> T {
     x.max(T::constant(low)).min(T::constant(high))
 }
 
-fn candidates(rows: &[ParamRow]) -> [u32; 3] {
-    let code = rows[2][3] as u32;
+fn candidates(q: &RepeatParams) -> [u32; 3] {
+    let code = q.candidates;
     [code & 127, (code >> 7) & 127, code >> 14]
 }
 
 /// The cell around `x` along one axis.
-fn repeat_base(x: f64, axis: usize, rows: &[ParamRow]) -> f64 {
-    let at = |row: usize| f64::from(rows[row][axis]);
-    ((x - at(3)) / at(0)).round_ties_even().clamp(at(1), at(2))
+fn repeat_base(x: f64, axis: usize, q: &RepeatParams) -> f64 {
+    ((x - q.middle[axis]) / q.spacing[axis]).round_ties_even().clamp(q.first[axis], q.last[axis])
 }
 
 /// The offset of the n-th neighbor: the cell itself, the nearer neighbor, the one across, and so on.
@@ -38,43 +37,41 @@ fn repeat_step(n: u32, side: f64) -> f64 {
 }
 
 /// The cell of the k-th copy.
-fn repeat_index<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> [f64; 3] {
-    let n = candidates(rows);
+fn repeat_index<T: Real>(p: Point<T>, k: u32, q: &RepeatParams) -> [f64; 3] {
+    let n = candidates(q);
     let neighbor = |x: f64, axis: usize, n: u32| {
-        let base = repeat_base(x, axis, rows);
-        let place = x - base * f64::from(rows[0][axis]) - f64::from(rows[3][axis]);
+        let base = repeat_base(x, axis, q);
+        let place = x - base * q.spacing[axis] - q.middle[axis];
         base + repeat_step(n, if place >= 0.0 { 1.0 } else { -1.0 })
     };
     let y = neighbor(p[1].value(), 1, k / n[0] % n[1]);
     let z = neighbor(p[2].value(), 2, k / (n[0] * n[1]));
-    [neighbor(p[0].value() - f64::from(rows[5][0]) * y, 0, k % n[0]), y, z]
+    [neighbor(p[0].value() - q.offset[0] * y, 0, k % n[0]), y, z]
 }
 
 /// The number of copies to evaluate for one point.
-pub fn mod_repeat_count(rows: &[ParamRow]) -> u32 {
-    candidates(rows).iter().product()
+pub fn mod_repeat_count(q: &RepeatParams) -> u32 {
+    candidates(q).iter().product()
 }
 
 /// Whether the k-th copy exists.
-pub fn mod_repeat_exists<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> bool {
-    let index = repeat_index(p, k, rows);
+pub fn mod_repeat_exists<T: Real>(p: Point<T>, k: u32, q: &RepeatParams) -> bool {
+    let index = repeat_index(p, k, q);
     let all = |test: &dyn Fn(usize, f64) -> bool| (0..3).all(|i| test(i, index[i]));
-    let at = |row: usize, i: usize| f64::from(rows[row][i]);
-    let carved = all(&|i, x| x >= at(6, i) && x < at(7, i));
-    all(&|i, x| x >= at(1, i) && x <= at(2, i)) && !carved
+    let carved = all(&|i, x| x >= q.carve_from[i] && x < q.carve_to[i]);
+    all(&|i, x| x >= q.first[i] && x <= q.last[i]) && !carved
 }
 
 /// The distance along one axis to the nearest cell that is not evaluated; `None` without such a cell.
-fn repeat_beyond<T: Real>(x: T, axis: usize, rows: &[ParamRow]) -> Option<T> {
-    let at = |row: usize| f64::from(rows[row][axis]);
-    let (spacing, half, n) = (at(0), at(4), candidates(rows)[axis]);
-    let base = repeat_base(x.value(), axis, rows);
-    let place = x - (at(3) + base * spacing);
+fn repeat_beyond<T: Real>(x: T, axis: usize, q: &RepeatParams) -> Option<T> {
+    let (spacing, half, n) = (q.spacing[axis], q.half[axis], candidates(q)[axis]);
+    let base = repeat_base(x.value(), axis, q);
+    let place = x - (q.middle[axis] + base * spacing);
     let (near, across) = (f64::from(n / 2), f64::from((n - 1) / 2));
     let (above, below) = if place.value() >= 0.0 { (near, across) } else { (across, near) };
     let (above, below) = (above + 1.0, below + 1.0);
-    let up = (base + above <= at(2)).then(|| -place + (above * spacing - half));
-    let down = (base - below >= at(1)).then(|| place + (below * spacing - half));
+    let up = (base + above <= q.last[axis]).then(|| -place + (above * spacing - half));
+    let down = (base - below >= q.first[axis]).then(|| place + (below * spacing - half));
     match (up, down) {
         (Some(a), Some(b)) => Some(a.min(b)),
         (a, b) => a.or(b),
@@ -82,14 +79,11 @@ fn repeat_beyond<T: Real>(x: T, axis: usize, rows: &[ParamRow]) -> Option<T> {
 }
 
 /// The distance to the cells that are not evaluated.
-pub fn mod_repeat_start<T: Real>(p: Point<T>, rows: &[ParamRow]) -> T {
-    let outside: [T; 3] = std::array::from_fn(|i| {
-        let (low, high) = (f64::from(rows[8][i]), f64::from(rows[9][i]));
-        (-p[i] + low).max(p[i] - high).positive()
-    });
-    let mut beyond: [Option<T>; 3] = std::array::from_fn(|i| repeat_beyond(p[i], i, rows));
-    if rows[5][0] != 0.0 && beyond[0].is_some() {
-        let (spacing, half, n) = (f64::from(rows[0][0]), f64::from(rows[4][0]), candidates(rows)[0]);
+pub fn mod_repeat_start<T: Real>(p: Point<T>, q: &RepeatParams) -> T {
+    let outside: [T; 3] = std::array::from_fn(|i| (-p[i] + q.least[i]).max(p[i] - q.greatest[i]).positive());
+    let mut beyond: [Option<T>; 3] = std::array::from_fn(|i| repeat_beyond(p[i], i, q));
+    if q.offset[0] != 0.0 && beyond[0].is_some() {
+        let (spacing, half, n) = (q.spacing[0], q.half[0], candidates(q)[0]);
         let (near, across) = (f64::from(n / 2), f64::from((n - 1) / 2));
         beyond[0] = Some(T::constant(((near + 0.5) * spacing).min((across + 1.0) * spacing) - half));
     }
@@ -105,37 +99,34 @@ pub fn mod_repeat_start<T: Real>(p: Point<T>, rows: &[ParamRow]) -> T {
 }
 
 /// Maps the point into the k-th copy.
-pub fn mod_repeat_point<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> Point<T> {
-    let index = repeat_index(p, k, rows);
-    let (spacing, offset) = (row(rows, 0), row(rows, 5));
+pub fn mod_repeat_point<T: Real>(p: Point<T>, k: u32, q: &RepeatParams) -> Point<T> {
+    let index = repeat_index(p, k, q);
+    let offset = q.offset;
     let shift = [offset[0] * index[1], offset[1] * index[0], offset[2] * index[0]];
-    let mut q: Point<T> = std::array::from_fn(|i| p[i] - (index[i] * spacing[i] + shift[i]));
-    if spacing[3] != 0.0 {
-        let (s, c) = (spacing[3] * index.iter().sum::<f64>()).sin_cos();
-        q = [q[0] * c - q[2] * s, q[1], q[0] * s + q[2] * c];
+    let mut at: Point<T> = std::array::from_fn(|i| p[i] - (index[i] * q.spacing[i] + shift[i]));
+    if q.turn != 0.0 {
+        let (s, c) = (q.turn * index.iter().sum::<f64>()).sin_cos();
+        at = [at[0] * c - at[2] * s, at[1], at[0] * s + at[2] * c];
     }
-    let flags = rows[1][3] as u32;
     std::array::from_fn(|i| {
         let odd = (index[i] - 2.0 * (index[i] * 0.5).floor()).abs() > 0.5;
-        if odd && flags & (1 << i) != 0 { -q[i] } else { q[i] }
+        if odd && q.mirrored & (1 << i) != 0 { -at[i] } else { at[i] }
     })
 }
 
 /// Maps the point into the k-th copy.
-pub fn mod_recursion_point<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> Point<T> {
-    let (offset, flags) = (row(rows, 0), rows[2][3] as u32);
-    let mut q = p;
+pub fn mod_recursion_point<T: Real>(p: Point<T>, k: u32, q: &RecursionParams) -> Point<T> {
+    let (offset, flags) = (q.offset, q.mirrored);
+    let mut at = p;
     for _ in 0..k {
         let folded: Point<T> = std::array::from_fn(|i| {
             let side = if flags & (8 << i) != 0 { -1.0 } else { 1.0 };
-            if flags & (1 << i) != 0 { q[i].abs() * side - offset[i] } else { q[i] - offset[i] }
+            if flags & (1 << i) != 0 { at[i].abs() * side - offset[i] } else { at[i] - offset[i] }
         });
-        q = [1, 2, 3].map(|r| {
-            let m = row(rows, r);
-            (folded[0] * m[0] + folded[1] * m[1] + folded[2] * m[2]) * offset[3].recip()
-        });
+        at = [q.inverse_x, q.inverse_y, q.inverse_z]
+            .map(|m| (folded[0] * m[0] + folded[1] * m[1] + folded[2] * m[2]) * q.scale.recip());
     }
-    q
+    at
 }
 
 /// Counterpart of the shader function, which documents it.
@@ -144,81 +135,74 @@ pub fn mod_enclosed<T: Real>(value: T, away: T, margin: f64) -> T {
 }
 
 /// Maps the point into the twisted content.
-pub fn mod_twist_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
-    let (a, b) = (row(rows, 0), row(rows, 1));
-    let reach = b[1] + a[3];
-    let angle = clamp(p[1], b[0] - reach, b[0] + reach) * a[0];
+pub fn mod_twist_point<T: Real>(p: Point<T>, q: &TwistParams) -> Point<T> {
+    let reach = q.half + q.margin;
+    let angle = clamp(p[1], q.center - reach, q.center + reach) * q.rate;
     let (c, s) = (angle.cos(), angle.sin());
     [c * p[0] - s * p[2], p[1], s * p[0] + c * p[2]]
 }
 
 /// The field of the twisted content.
-pub fn mod_twist_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
-    let (a, b) = (row(rows, 0), row(rows, 1));
-    let away = (length([p[0], p[2]]) - a[2]).max((p[1] - b[0]).abs() - b[1]);
-    mod_enclosed(f * a[1], away, a[3])
+pub fn mod_twist_value<T: Real>(f: T, p: Point<T>, q: &TwistParams) -> T {
+    let away = (length([p[0], p[2]]) - q.radius).max((p[1] - q.center).abs() - q.half);
+    mod_enclosed(f * q.slope, away, q.margin)
 }
 
 /// The position along the arc, and from the arc toward the center.
-fn bend_place<T: Real>(p: Point<T>, rows: &[ParamRow]) -> [T; 2] {
-    let a = row(rows, 0);
-    let height = p[1] * a[3];
-    let down = -height + a[0];
+fn bend_place<T: Real>(p: Point<T>, q: &BendParams) -> [T; 2] {
+    let height = p[1] * q.side;
+    let down = -height + q.radius;
     let r = length([p[0], down]);
-    [p[0].atan2(down), (height * (2.0 * a[0]) - p[0].squared() - height.squared()) / (r + a[0])]
+    [p[0].atan2(down), (height * (2.0 * q.radius) - p[0].squared() - height.squared()) / (r + q.radius)]
 }
 
 /// Maps the point into the bent content.
-pub fn mod_bend_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
-    let a = row(rows, 0);
-    let [angle, height] = bend_place(p, rows);
-    [angle * a[0], height * a[3], p[2]]
+pub fn mod_bend_point<T: Real>(p: Point<T>, q: &BendParams) -> Point<T> {
+    let [angle, height] = bend_place(p, q);
+    [angle * q.radius, height * q.side, p[2]]
 }
 
 /// The field of the bent content.
-pub fn mod_bend_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
-    let (a, b) = (row(rows, 0), row(rows, 1));
-    let [angle, height] = bend_place(p, rows);
+pub fn mod_bend_value<T: Real>(f: T, p: Point<T>, q: &BendParams) -> T {
+    let [angle, height] = bend_place(p, q);
     let quarter = std::f64::consts::FRAC_PI_2;
-    let open = clamp(angle.abs() - b[0], -quarter, quarter);
-    let of_arc = (height - b[2]).max(-height + b[1]).max((-height + a[0]) * open.sin());
-    mod_enclosed(f * a[1], of_arc.max(chebyshev(p, row(rows, 2), row(rows, 3))), a[2])
+    let open = clamp(angle.abs() - q.reach, -quarter, quarter);
+    let of_arc = (height - q.high).max(-height + q.low).max((-height + q.radius) * open.sin());
+    mod_enclosed(f * q.slope, of_arc.max(chebyshev(p, q.center, q.half)), q.margin)
 }
 
 /// The largest of a point's distances to the sides of a box; negative inside.
-fn chebyshev<T: Real>(p: Point<T>, center: [f64; 4], half: [f64; 4]) -> T {
+fn chebyshev<T: Real>(p: Point<T>, center: [f64; 3], half: [f64; 3]) -> T {
     let [x, y, z]: Point<T> = std::array::from_fn(|i| (p[i] - center[i]).abs() - half[i]);
     x.max(y).max(z)
 }
 
 /// Maps the point into the tapered content.
-pub fn mod_taper_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
-    let width = clamp(p[1], row(rows, 1)[3], row(rows, 2)[3]) * row(rows, 0)[0] + 1.0;
+pub fn mod_taper_point<T: Real>(p: Point<T>, q: &TaperParams) -> Point<T> {
+    let width = clamp(p[1], q.low, q.high) * q.rate + 1.0;
     [p[0] / width, p[1], p[2] / width]
 }
 
 /// The field of the tapered content.
-pub fn mod_taper_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
-    let a = row(rows, 0);
-    mod_enclosed(f * a[1], chebyshev(p, row(rows, 1), row(rows, 2)), a[2])
+pub fn mod_taper_value<T: Real>(f: T, p: Point<T>, q: &TaperParams) -> T {
+    mod_enclosed(f * q.slope, chebyshev(p, q.center, q.half), q.margin)
 }
 
 /// Maps the point into the elongated content.
-pub fn mod_elongate_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
-    let half = row(rows, 0);
-    std::array::from_fn(|i| p[i] - clamp(p[i], -half[i], half[i]))
+pub fn mod_elongate_point<T: Real>(p: Point<T>, q: &ElongateParams) -> Point<T> {
+    std::array::from_fn(|i| p[i] - clamp(p[i], -q.half[i], q.half[i]))
 }
 
 /// The field of the onion's walls.
-pub fn mod_onion_value<T: Real>(f: T, rows: &[ParamRow]) -> T {
-    let [half, walls, spacing, _] = row(rows, 0);
+pub fn mod_onion_value<T: Real>(f: T, q: &OnionParams) -> T {
+    let OnionParams { half, walls, spacing } = *q;
     let wall = (-f.value() / spacing).round_ties_even().clamp(0.0, walls - 1.0);
     (f + wall * spacing).abs() - half
 }
 
 /// The field displaced by waves.
-pub fn mod_waves_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
-    let [amplitude, frequency, phase, slope] = row(rows, 0);
+pub fn mod_waves_value<T: Real>(f: T, p: Point<T>, q: &WavesParams) -> T {
+    let WavesParams { amplitude, frequency, phase, slope } = *q;
     let [x, y, z] = p.map(|x| (x * frequency + phase).sin());
     let displaced = f + x * y * z * amplitude;
     (displaced * slope).max(f - amplitude).min(f + amplitude)
@@ -253,34 +237,33 @@ pub fn noise_value<T: Real>(p: Point<T>, seed: u32) -> T {
 }
 
 /// The field displaced by noise.
-pub fn mod_noise_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
-    let ([mut amplitude, mut frequency, layers, seed], b) = (row(rows, 0), row(rows, 1));
+pub fn mod_noise_value<T: Real>(f: T, p: Point<T>, q: &NoiseParams) -> T {
+    let (mut amplitude, mut frequency) = (q.amplitude, q.frequency);
     let mut moved = f;
-    for layer in 0..layers as u32 {
-        moved = moved + noise_value(p.map(|x| x * frequency), seed as u32 + layer) * amplitude;
+    for layer in 0..q.layers {
+        moved = moved + noise_value(p.map(|x| x * frequency), q.seed + layer) * amplitude;
         amplitude *= 0.5;
         frequency *= 2.0;
     }
-    (moved * b[0]).max(f - b[1]).min(f + b[1])
+    (moved * q.slope).max(f - q.reach).min(f + q.reach)
 }
 
 /// The position of the point in the image, in tiles, mirrored at their borders.
-fn displacement_place<T: Real>([x, y, z]: Point<T>, [width, length, ..]: [f64; 4], axis: f64) -> [T; 2] {
-    let (across, down) = match axis as u32 {
+fn displacement_place<T: Real>([x, y, z]: Point<T>, q: &DisplacementParams) -> [T; 2] {
+    let (across, down) = match q.axis {
         0 => (-z, -y),
         1 => (x, z),
         _ => (x, -y),
     };
-    [across * width + 0.5, down * length + 0.5].map(|tiles| {
+    [across * q.tiles[0] + 0.5, down * q.tiles[1] + 0.5].map(|tiles| {
         let even = 2.0 * (tiles.value() * 0.5).round_ties_even();
         (tiles - even).abs()
     })
 }
 
 /// The field displaced by an image.
-pub fn mod_displacement_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow], data: &[ParamRow]) -> T {
-    let (a, [scale, least, greatest, axis]) = (row(rows, 0), row(rows, 1));
-    let [x, y] = displacement_place(p, a, axis);
-    let height = sdf_heights([x * a[2], y * a[3]], [a[2], a[3]], &|i: usize| data[i].map(f64::from));
-    ((f - height) * scale).max(f - greatest).min(f - least)
+pub fn mod_displacement_value<T: Real>(f: T, p: Point<T>, q: &DisplacementParams, data: &[ParamRow]) -> T {
+    let [x, y] = displacement_place(p, q);
+    let height = sdf_heights([x * q.cells[0], y * q.cells[1]], q.cells, &|i: usize| data[i].map(f64::from));
+    ((f - height) * q.slope).max(f - q.greatest).min(f - q.least)
 }

@@ -165,6 +165,5 @@ fn before_blend(node: &FlatNode, rows: &[ParamRow]) -> f64 {
 fn of_content(kind: ModifierKind, rows: &[ParamRow], exact: f64) -> f64 {
     // The evaluators do not evaluate the result of a distance scale of 0.
     let local = exact / f64::from(rows[1][3]).max(f64::MIN_POSITIVE);
-    let own = |row: usize, column: usize| f64::from(rows[MODIFIER_ROWS + row][column]);
-    content_exactness(kind, local, &own)
+    content_exactness(kind, local, &rows[MODIFIER_ROWS..])
 }
