@@ -1,4 +1,4 @@
-//! Copies below a pixel: what they cost, how their detail falls with distance, and how little they flicker.
+//! Copies below a pixel: what they cost by their size in the picture, and how little they flicker.
 
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use glam::{DVec2, DVec3};
 
+use isolith::field::RayLimits;
 use isolith::field::copies::{CopyCone, copies_along};
-use isolith::field::{GBuffer, RayLimits};
 use isolith::geometry::{Camera, Lens, Ray};
 use isolith::render::{EvalStrategy, Film, OverlaySettings, Renderer, Slot};
 use isolith::scene::{DynamicKind, Instancer, Lattice, Variation};
@@ -18,14 +18,16 @@ use crate::copies::{scene_of, varied};
 use crate::gpu::{BenchScene, shared};
 
 /// Width and height of the pictures, in pixels.
-const SIDE: u32 = 64;
+const SIDE: u32 = 48;
 /// Angle of view from top to bottom, in radians.
 const VIEW: f64 = 0.8;
 /// How far the camera of a flight moves in a frame, in meters.
 const FLIGHT_STEP: f64 = 0.02;
+/// Sizes of copies in pixels, from their middle to their border, at which ranges begin.
+const RANGES: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 1.0];
 
-/// Small copies without end that move with the wind, from above, and larger ones in all directions.
-fn endless() -> Vec<BenchScene> {
+/// Copies without end that move, and how large most of them are: small ones on a plane, or larger ones in all directions.
+fn endless() -> [(BenchScene, f64); 2] {
     let meadow = Lattice::Grid { counts: [0, 1, 0], spacing: [0.5; 3] };
     let variation = Variation { scale_min: [0.2; 3], scale_max: [0.4; 3], ..varied() };
     let meadow = Instancer { lattice: meadow, variation, probability: 0.9, seed: 5, ..Instancer::default() };
@@ -33,14 +35,15 @@ fn endless() -> Vec<BenchScene> {
     let space = Instancer { lattice: space, variation: varied(), probability: 0.2, seed: 5, ..Instancer::default() };
     let of =
         |name, copies: Instancer, dynamics: &[DynamicKind]| BenchScene::new(name, &scene_of(copies, dynamics), None);
-    vec![
-        of("meadow", meadow, &[DynamicKind::Wind, DynamicKind::FractionalBrownianMotion]),
-        of("space", space, &[DynamicKind::Orbit, DynamicKind::Spin]),
+    [
+        (of("meadow", meadow, &[DynamicKind::Wind, DynamicKind::FractionalBrownianMotion]), 0.2),
+        (of("space", space, &[DynamicKind::Orbit, DynamicKind::Spin]), 0.55),
     ]
 }
 
-fn camera(frame: u32) -> Camera {
-    let eye = DVec3::new(0.3, 20.0, 6.0 - FLIGHT_STEP * f64::from(frame));
+/// The view of a flight at this height.
+fn camera(height: f64, frame: u32) -> Camera {
+    let eye = DVec3::new(0.3, height, 6.0 - FLIGHT_STEP * f64::from(frame));
     Camera { far: 4_000.0, ..Camera::looking_at(eye, eye + DVec3::new(0.1, -0.3, -1.0), VIEW) }
 }
 
@@ -51,15 +54,6 @@ fn counting() -> Renderer {
     let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
     renderer.set_strategy(EvalStrategy::Tape);
     renderer
-}
-
-/// Radii of copies in pixels, at which ranges end.
-const RANGES: [f64; 6] = [0.0, 0.125, 0.25, 0.5, 1.0, 2.0];
-
-fn range_of(depth: f32, radius: f64) -> usize {
-    let footprint = 2.0 * (0.5 * VIEW).tan() / f64::from(SIDE);
-    let size = radius / (f64::from(depth) * footprint);
-    RANGES.iter().rposition(|least| size >= *least).unwrap_or(0)
 }
 
 /// What a ray looks at up to the second sphere that it meets: cells, copies there, those moved, spheres met.
@@ -79,53 +73,85 @@ fn walked(scene: &BenchScene, x: u32, y: u32) -> [f64; 4] {
     [work.cells, work.copies, work.moved, work.met].map(|count| count as f64)
 }
 
+/// Of each range of sizes the pixels that show a copy so large, and per pixel the evaluations of fields and what rays look at, see
+/// [`walked`].
+fn work_by_size(renderer: &mut Renderer, scene: &BenchScene, size: f64) -> [[f64; 6]; RANGES.len()] {
+    let overlay = OverlaySettings::default();
+    let begun = renderer.begin(Slot::Full, &scene.flat, &[], &scene.camera, [SIDE; 2], overlay);
+    let mut frame = begun.expect("a frame");
+    renderer.advance(&mut frame, Duration::MAX).expect("a picture");
+    let counts = renderer.pixel_counts(&frame).expect("counts");
+    let picture = renderer.read(&frame).expect("a picture");
+    let footprint = scene.camera.footprint(f64::from(SIDE));
+    let mut sums = [[0.0; 6]; RANGES.len()];
+    for at in (0..SIDE * SIDE).filter(|at| picture.depth[*at as usize].is_finite()) {
+        let (x, y) = (at % SIDE, at / SIDE);
+        let shown = size / (f64::from(picture.depth[at as usize]) * footprint);
+        let sum = &mut sums[RANGES.iter().rposition(|least| shown >= *least).unwrap_or(0)];
+        sum[0] += 1.0;
+        sum[1] += counts.with_cones(x, y, |one| one.evaluations);
+        for (sum, more) in sum[2..].iter_mut().zip(walked(scene, x, y)) {
+            *sum += more;
+        }
+    }
+    for sum in &mut sums {
+        let pixels = sum[0];
+        sum[1..].iter_mut().for_each(|all| *all /= f64::max(pixels, 1.0));
+    }
+    for (least, sum) in RANGES.iter().zip(&sums).filter(|(_, sum)| sum[0] > 0.0) {
+        println!("{}, {least} px and more: pixels, evaluations, cells, copies, moved, met {sum:.2?}", scene.name);
+    }
+    sums
+}
+
+/// Scenes that are measured: all with `ISOLITH_MEASURE_COPIES=all`.
+fn measured() -> impl Iterator<Item = (BenchScene, f64)> {
+    let is_whole = std::env::var("ISOLITH_MEASURE_COPIES").is_ok_and(|value| value == "all");
+    endless().into_iter().take(if is_whole { 2 } else { 1 })
+}
+
+/// What is below a pixel takes no more evaluations than what is above, and few of the copies on the way are moved.
 #[test]
-fn figures_of_copies_by_their_size() {
+fn copies_below_a_pixel_cost_no_more_evaluations_than_large_ones() {
     let mut renderer = counting();
-    for mut scene in endless() {
-        let radius = if scene.name == "meadow" { 0.2 } else { 0.55 };
-        let size = [SIDE, SIDE];
-        let mut pictures: Vec<[GBuffer; 2]> = Vec::new();
-        for frame in 0..2 {
-            scene.camera = camera(frame);
-            pictures.push([1, 4].map(|samples| {
-                let film = Film { samples, is_transparent: false, lens: Lens::default() };
-                let start = std::time::Instant::now();
-                let drawn = renderer.render_samples(film, &scene.flat, &[], &scene.camera, size, &mut |_| true);
-                let drawn = drawn.expect("a picture").0;
-                println!("{} {samples}: {:?}", scene.name, start.elapsed());
-                drawn
-            }));
-        }
-        let begun = renderer.begin(Slot::Full, &scene.flat, &[], &scene.camera, size, OverlaySettings::default());
-        let mut frame = begun.expect("a frame");
-        renderer.advance(&mut frame, Duration::MAX).expect("a picture");
-        let counts = renderer.pixel_counts(&frame).expect("counts");
-        let picture = renderer.read(&frame).expect("a picture");
-        let mut sums = [[0.0; 8]; 8];
-        for at in 0..(SIDE * SIDE) as usize {
-            let depth = picture.depth[at];
-            let row = if depth.is_finite() { 1 + range_of(depth, radius) } else { 0 };
-            let (x, y) = (at as u32 % SIDE, at as u32 / SIDE);
-            sums[row][0] += 1.0;
-            sums[row][1] += counts.with_cones(x, y, |one| one.evaluations);
-            let work = walked(&scene, x, y);
-            for (sum, more) in sums[row][4..].iter_mut().zip(work) {
-                *sum += more;
-            }
-            for way in 0..2 {
-                let colors = [0, 1].map(|frame| pictures[frame][way].color[at]);
-                let differs = (0..3).map(|c| f64::from(colors[0][c].abs_diff(colors[1][c]))).sum::<f64>() / 3.0;
-                sums[row][2 + way] += differs;
-            }
-        }
-        println!(
-            "{}: radius, pixels, evaluations, difference at 1 and 4 samples, cells, copies, moved, met",
-            scene.name
-        );
-        for (row, sum) in sums.iter().enumerate().filter(|(_, sum)| sum[0] > 0.0) {
-            let each: Vec<f64> = sum[1..].iter().map(|all| all / sum[0]).collect();
-            println!("  {:?} px: {} {each:.2?}", row.checked_sub(1).map(|row| RANGES[row]), sum[0]);
-        }
+    for (mut scene, size) in measured() {
+        scene.camera = camera(1.5, 0);
+        let near = work_by_size(&mut renderer, &scene, size)[RANGES.len() - 1];
+        scene.camera = camera(20.0, 0);
+        let far = work_by_size(&mut renderer, &scene, size)[0];
+        assert!(near[0] > 100.0 && far[0] > 100.0, "{near:?}, {far:?}");
+        assert!(far[1] < 1.2 * near[1], "{far:?} against {near:?}");
+        assert!(far[4] < 0.5 * far[3], "{far:?}");
+    }
+}
+
+/// Mean difference of a channel between two frames of a flight, of 255.
+fn flicker(renderer: &mut Renderer, scene: &mut BenchScene, samples: u32) -> f64 {
+    let film = Film { samples, is_transparent: false, lens: Lens::default() };
+    let frames = [0, 1].map(|frame| {
+        scene.camera = camera(20.0, frame);
+        let drawn = renderer.render_samples(film, &scene.flat, &[], &scene.camera, [SIDE; 2], &mut |_| true);
+        drawn.expect("a picture").0
+    });
+    let hits = |at: &usize| frames.iter().any(|frame| frame.depth[*at].is_finite());
+    let shown: Vec<usize> = (0..frames[0].depth.len()).filter(hits).collect();
+    let differs = |at: &usize| {
+        let colors = [0, 1].map(|frame| frames[frame].color[*at]);
+        (0..3).map(|c| f64::from(colors[0][c].abs_diff(colors[1][c]))).sum::<f64>() / 3.0
+    };
+    shown.iter().map(differs).sum::<f64>() / shown.len() as f64
+}
+
+/// Copies that are smaller than a pixel differ from frame to frame by less than this on average, of 255: with one sample, and with
+/// eight.
+const FLICKER: [f64; 2] = [9.0, 5.0];
+
+#[test]
+fn samples_settle_what_is_below_a_pixel() {
+    let mut renderer = counting();
+    for (mut scene, _) in measured() {
+        let [one, eight] = [1, 8].map(|samples| flicker(&mut renderer, &mut scene, samples));
+        println!("{}: frames differ by {one:.2} of 255 with one sample, by {eight:.2} with eight", scene.name);
+        assert!(one < FLICKER[0] && eight < FLICKER[1] && eight < 0.8 * one, "{one}, {eight}");
     }
 }

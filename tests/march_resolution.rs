@@ -116,11 +116,9 @@ fn difference(scene: &BenchScene, [exact, coarse]: [&GBuffer; 2], is_part: &dyn 
     found
 }
 
-/// Whether a difference is as small as promised: on a ball of 20 pixels, between rays that are 4 pixels apart, depth is off by a
-/// tenth of a footprint where one looks at it straight, and by some three where it is as steep as the limit.
-fn is_small(found: &Difference, resolution: MarchResolution) -> bool {
-    let [mean, most] = if resolution == MarchResolution::Half { [0.06, 3.0] } else { [0.2, 6.0] };
-    found.mean < mean && found.most < most && found.one_only * 1_000 <= found.shared && found.others == 0
+/// Whether a difference is as small as promised: a part of a footprint, but where the surface bends otherwise than at the four.
+fn is_small(found: &Difference) -> bool {
+    found.mean < 0.1 && found.most < 1.5 && found.one_only * 1_000 <= found.shared && found.others == 0
 }
 
 /// The picture as if each pixel showed what the one of the coarse grid before it does.
@@ -145,9 +143,9 @@ fn a_part_with_fewer_rays_is_nearly_the_same_and_leaves_others_exact() {
             let (coarse, few) = drawn(&scene, strategy);
             let found = difference(&whole, [&exact, &coarse], &is_part);
             println!("{strategy:?}, {resolution:?}: {few:.2} of {all:.2} evaluations per pixel, {found:?}");
-            assert!(found.shared > 3_000 && is_small(&found, resolution), "{strategy:?}, {resolution:?}: {found:?}");
+            assert!(found.shared > 3_000 && is_small(&found), "{strategy:?}, {resolution:?}: {found:?}");
             let naive = difference(&whole, [&exact, &blocky(&exact, resolution.spacing())], &is_part);
-            assert!(!is_small(&naive, resolution), "{naive:?}");
+            assert!(!is_small(&naive), "{naive:?}");
         }
     }
 }
@@ -157,7 +155,7 @@ fn fewer_rays_take_fewer_evaluations() {
     let [all, half, quarter] = [MarchResolution::Full, MarchResolution::Half, MarchResolution::Quarter]
         .map(|resolution| drawn(&block(resolution, false).0, EvalStrategy::Tape).1);
     println!("evaluations per pixel: {all:.2}, at 1/2 {half:.2}, at 1/4 {quarter:.2}");
-    assert!(half < 0.6 * all && quarter < half, "{all}, {half}, {quarter}");
+    assert!(half < 0.65 * all && quarter < 0.65 * all, "{all}, {half}, {quarter}");
 }
 
 #[test]
@@ -172,7 +170,7 @@ fn copies_with_fewer_rays_are_nearly_the_same_copies() {
         let (coarse, few) = drawn(&lattice(resolution), EvalStrategy::Tape);
         let found = difference(&whole, [&exact, &coarse], &is_part);
         println!("{resolution:?}: {few:.2} of {all:.2} evaluations per pixel, {found:?}");
-        assert!(found.shared > 2_000 && is_small(&found, resolution), "{resolution:?}: {found:?}");
+        assert!(found.shared > 2_000 && is_small(&found), "{resolution:?}: {found:?}");
     }
 }
 
