@@ -1,7 +1,7 @@
 # Isolith. `make run` and `make test` are all that a fresh Debian or Ubuntu machine with Rust needs.
 
 SHELL := /bin/bash
-.PHONY: help run test nightly window pictures lint bench gpu-static golden scenes setup
+.PHONY: help run test nightly window pictures platforms lint bench gpu-static golden scenes setup
 .DEFAULT_GOAL := help
 
 # Vulkan drivers want a private folder and complain where there is none.
@@ -43,6 +43,12 @@ pictures: setup ## Take pictures of all panels in both themes, and of a robot bu
 	cargo build
 	tests/pictures.sh target/debug/isolith target/pictures
 	tests/character.sh target/debug/isolith target/pictures
+
+# No program is linked, so no libraries of those systems are needed.
+platforms: ## Check that everything compiles for Windows and macOS
+	rustup target add x86_64-pc-windows-gnu aarch64-apple-darwin
+	cargo check --workspace --target x86_64-pc-windows-gnu
+	cargo check --workspace --target aarch64-apple-darwin
 
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy

@@ -49,7 +49,7 @@ const CASES: &[Case] = &[
     (r#""name": "Sun""#, r#""name": "S\qun""#, "#5", "nodes[4].name", "invalid escape"),
     (r#""name": "Sun""#, r#""name": "S\ud800un""#, "#5", "nodes[4].name", "hex escape"),
     ("  ]\n}", "  ]\n} {}", "", "", "trailing characters"),
-    ("  ]\n}", "  ]", "", "", "EOF"),
+    ("  ]\n}", "  ]", "", "", "ends before it is complete"),
     // Fields.
     (r#""name": "Head","#, r#""name": "Head", "color": 3,"#, "Head #2", "nodes[1].color", "unknown field"),
     (r#""radius": 0.5"#, r#""radus": 0.5"#, "Head #2", "nodes[1].object.shape.radus", "unknown field"),
@@ -385,8 +385,8 @@ fn every_broken_file_is_refused_with_its_place() {
 #[test]
 fn files_that_are_no_json_are_refused() {
     let cases: [(&[u8], &str); 10] = [
-        (b"", "EOF"),
-        (b"   \n", "EOF"),
+        (b"", "ends before it is complete"),
+        (b"   \n", "ends before it is complete"),
         (b"\x00\x01\x02", "line 1, column 1"),
         (b"{\n\"isolith\": 1, \"\xff\": 2}", "line 2, column 16: is not text in UTF-8"),
         (b"\xff\xfe{\x00}\x00", "is not text in UTF-8"),

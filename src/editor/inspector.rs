@@ -1,5 +1,6 @@
 //! The panel on the right: all parameters of the selection, or of the world if nothing is selected.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use egui::{RichText, ScrollArea, TextEdit, Ui, vec2};
@@ -7,17 +8,18 @@ use egui_material_icons::icons::{ICON_LINK, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISI
 
 use super::edit_session::EditSession;
 use super::material_library::MaterialLibrary;
+use super::messages::Severity;
 use super::multi_edit::MultiEdit;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::theme::MIXED;
 use super::{
     icons, inspector_blends, inspector_instancer, inspector_kinds, inspector_lists, inspector_material,
-    inspector_scene, inspector_transform, inspector_types, selection, theme, widgets,
+    inspector_scene, inspector_transform, inspector_types, node_warnings, selection, theme, widgets,
 };
 use isolith_jobs::Task;
 use isolith_scene::limits::MAX_NAME;
-use isolith_scene::{Node, NodeKind};
+use isolith_scene::{Node, NodeId, NodeKind};
 
 /// State of the inspector that persists between frames.
 #[derive(Default)]
@@ -25,6 +27,8 @@ pub struct Inspector {
     transform: inspector_transform::EulerMemory,
     /// The tasks that run in this frame.
     tasks: Vec<Task>,
+    /// What is wrong with nodes in this frame.
+    warned: HashMap<NodeId, String>,
 }
 
 impl Panel for Inspector {
@@ -42,6 +46,7 @@ impl Panel for Inspector {
 
     fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
         self.tasks = state.derived.jobs().listed();
+        self.warned = node_warnings::all(state);
         widgets::fixed(ui, |ui| self.show(ui, &mut state.session, &mut state.materials));
     }
 }
@@ -94,6 +99,12 @@ impl Inspector {
         all: Vec<Arc<Node>>,
     ) {
         header(ui, session, &active, &all);
+        if let Some(warning) = self.warned.get(&active.id) {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(Severity::Warning.icon().size(14.0));
+                ui.label(RichText::new(warning).color(theme::WARNING));
+            });
+        }
         if all.iter().all(|n| n.has_field())
             && let Some(mut edit) = MultiEdit::new(session, all.clone())
         {

@@ -194,6 +194,24 @@ mod tests {
     }
 
     #[test]
+    fn a_model_from_elsewhere_is_copied_with_its_files_and_replaces_none() {
+        let (home, away) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        scene_in(home.path());
+        let (model, task) = (home.path().join("models/triangle.gltf"), Task::new("test"));
+        let there = bring(&model, away.path(), &task).unwrap();
+        assert_eq!(there, "models/triangle.gltf");
+        assert!(away.path().join("models/parts/triangle.bin").is_file());
+        assert_eq!(bring(&model, away.path(), &task).unwrap(), there, "the same file once more");
+        fs::write(away.path().join(&there), "mine").unwrap();
+        let beside = bring(&model, away.path(), &task).unwrap();
+        assert_eq!(beside, "models/triangle-1/triangle.gltf");
+        assert_eq!(fs::read(away.path().join(&there)).unwrap(), b"mine");
+        assert_eq!(model_files(away.path(), &beside).unwrap().len(), 2);
+        let gone = bring(&home.path().join("models/none.glb"), away.path(), &task).unwrap_err();
+        assert!(gone.contains("none.glb"), "{gone}");
+    }
+
+    #[test]
     fn a_model_that_is_gone_is_named() {
         let (home, away) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         let scene = scene_in(home.path());

@@ -183,3 +183,25 @@ fn the_origin_of_a_group_moves_below_what_it_holds_and_nothing_else_moves() {
     assert_eq!(undo_all(&mut harness), 1);
     assert_eq!(*harness.state().document().scene(), scene);
 }
+
+/// A group turns and grows where it stands, not around the origin of the world.
+#[test]
+fn a_new_group_has_its_origin_below_what_it_holds() {
+    let (scene, [_, _, tall, far]) = boxes();
+    let mut harness = open(scene.clone());
+    let world =
+        |harness: &Harness<'_, Editor>, id: NodeId| harness.state().document().scene().world_from_local(id).translation;
+    for key in [Key::U, Key::I, Key::D] {
+        choose(&mut harness, &[tall, far]);
+        let before = [tall, far].map(|id| world(&harness, id));
+        press(&mut harness, Modifiers::NONE, key);
+        let group = harness.state().document().selection()[0];
+        // From 1.8 to 7.5, from 2.5 to 5 and from -0.5 to 1.2.
+        let origin = place(&harness, group);
+        assert!((origin - DVec3::new(4.65, 2.5, 0.35)).length() < 1e-9, "{origin}");
+        let after = [tall, far].map(|id| world(&harness, id));
+        assert!(before.iter().zip(after).all(|(a, b)| (*a - b).length() < 1e-12), "{before:?} {after:?}");
+        assert_eq!(undo_all(&mut harness), 1);
+        assert_eq!(*harness.state().document().scene(), scene);
+    }
+}

@@ -23,6 +23,7 @@ pub(super) fn json_error(text: &str, file: &Path, path: Option<&FieldPath>, erro
     let whole = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     let reason = whole.strip_suffix(&place).unwrap_or(&whole);
+    let reason = if error.is_eof() { "the file ends before it is complete" } else { reason };
     let plain = clipped(reason, 400)
         .replace("expected f64", "expected a number")
         .replace("expected u64", "expected a whole number from 0")
