@@ -289,7 +289,7 @@ fn each_pass_has_a_row_with_its_time() {
         return;
     }
     let rows = renderer.timings().expect("the device has a clock");
-    assert_eq!(rows.len(), ALWAYS.len() + 6, "{rows:?}");
+    assert_eq!(rows.len(), ALWAYS.len() + 7, "{rows:?}");
     assert!(rows.iter().all(|row| (row.runs > 0) == ALWAYS.contains(&row.label)), "{rows:?}");
     let sum: f64 = rows.iter().map(|row| row.seconds).sum();
     assert!(sum > 0.0 && sum <= whole, "{sum} of {whole} s: {rows:?}");

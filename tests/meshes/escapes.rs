@@ -56,7 +56,7 @@ fn paths_that_leave_the_folder_are_refused() {
         ("http://localhost/x.bin", "plain relative"),
         ("C:/secret.bin", "plain relative"),
         ("", "no file"),
-        ("no-such.bin", "cannot be opened"),
+        ("no-such.bin", "is not there"),
         (".", "not a file"),
     ] {
         let have = refusal(uri, |_| ());

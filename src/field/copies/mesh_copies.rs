@@ -56,6 +56,7 @@ impl<'a> MeshInstancer<'a> {
         let scale = DVec3::from_array(instancer.variation.scale_max).max_element();
         let reach = (center.length() + radius) * scale * copy_envelope(&instancer.dynamics).scale;
         instancer.reach += DVec3::splat(reach);
+        instancer.reach_at_rest += reach;
         Some(Self { instancer, kind: of.kind, placed, reach })
     }
 
