@@ -36,6 +36,8 @@ kept() { find "$XDG_STATE_HOME/isolith/recovery" -name "$1" 2>/dev/null | wc -l;
 
 start_editor() {
     open_editor "$1" || fail "the editor ended or has no window"
+    # Off the viewport, where a copy would follow the pointer.
+    xdotool mousemove 640 12
     sleep 2
 }
 
