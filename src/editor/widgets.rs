@@ -187,6 +187,8 @@ pub fn scrolling<R>(ui: &mut Ui, room: f32, add: impl FnOnce(&mut Ui) -> R) -> R
     // Show the scroll bar before the pointer is near, as a sign of more entries.
     let scroll = &mut ui.spacing_mut().scroll;
     (scroll.floating_width, scroll.dormant_handle_opacity) = (4.0, 0.7);
+    // Beside the shortcuts, not over them.
+    scroll.floating_allocated_width = 8.0;
     // A popup offers a fixed height, however much room there is.
     ui.set_max_height(room);
     ScrollArea::vertical().max_height(room).show(ui, add).inner
