@@ -2,8 +2,9 @@
 //! evaluates nothing, so one pipeline serves all components; types of instancers have another one.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
-use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
+use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, Device, TextureFormat};
 
 use super::frame_pass::{Building, FramePass};
 use crate::pipelines::field_buffers::FieldBuffers;
@@ -46,13 +47,32 @@ bindings! {
 /// The pass. Of each pair the second one is for types of instancers.
 #[derive(Debug)]
 pub struct ResolutionPass {
-    pipelines: [ComputePipeline; 2],
+    /// Built on first use: few scenes have such parts.
+    pipelines: [OnceLock<ComputePipeline>; 2],
+    device: Device,
+    texts: [String; 2],
+    /// The layouts of the groups around the targets.
+    around: [BindGroupLayout; 3],
     /// Group 1, which is empty.
     scene: BindGroup,
     targets: [BindGroupLayout; 2],
 }
 
 impl ResolutionPass {
+    fn pipeline(&self, own: usize) -> &ComputePipeline {
+        self.pipelines[own].get_or_init(|| {
+            let [view, nothing, dispatch_params] = &self.around;
+            let groups = [view, nothing, &self.targets[own], dispatch_params];
+            compute_pipeline(
+                &self.device,
+                Pass::Resolution.label(),
+                self.texts[own].clone(),
+                "resolution_pass",
+                &groups,
+            )
+        })
+    }
+
     fn bind_plain(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> BindGroup {
         let group = ResolutionBindings {
             depth: targets.depth.binding(),
@@ -93,13 +113,15 @@ impl FramePass for ResolutionPass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let nothing = layout(device, "nothing", &[]);
         let targets = [ResolutionBindings::layout(device), ResolutionCopiesBindings::layout(device)];
-        let pipeline = |targets: &BindGroupLayout, features: &[&str]| {
-            let groups = [&layouts.view, &nothing, targets, &layouts.dispatch_params];
-            let text = assemble_featured(Pass::Resolution.file(), features)?;
-            Ok(compute_pipeline(device, Pass::Resolution.label(), text, "resolution_pass", &groups))
-        };
-        let pipelines = [pipeline(&targets[0], &[])?, pipeline(&targets[1], &["COPIES"])?];
-        Ok(Self { pipelines, scene: bind(device, "nothing", &nothing, &[]), targets })
+        let text = |features: &[&str]| assemble_featured(Pass::Resolution.file(), features);
+        Ok(Self {
+            pipelines: Default::default(),
+            device: device.clone(),
+            texts: [text(&[])?, text(&["COPIES"])?],
+            scene: bind(device, "nothing", &nothing, &[]),
+            around: [layouts.view.clone(), nothing, layouts.dispatch_params.clone()],
+            targets,
+        })
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
@@ -116,7 +138,7 @@ impl FramePass for ResolutionPass {
             let counts = recorder.resources.subtile_counts.buffer();
             let [_, targets] = recorder.groups(own);
             let pass = recorder.compute(at);
-            pass.set_pipeline(&self.pipelines[own]);
+            pass.set_pipeline(self.pipeline(own));
             pass.set_bind_group(1, &self.scene, &[]);
             pass.set_bind_group(2, targets, &[]);
             pass.dispatch_workgroups_indirect(counts, (list * SUBTILE_COUNTS) as u64 * 4);
